@@ -1,0 +1,68 @@
+# One component = one folder under src/ = one static library = one namespace.
+#
+#   rondo_component(koord/check DEPS base diag koord/syntax LIBS fmt::fmt)
+#
+# Every *.cc beside the header is compiled in; every *_test.cc becomes part of the component's test binary. DEPS is
+# the layer graph: it is written to layers.txt, and the test `layers` fails on an include that it does not allow.
+
+set_property(GLOBAL PROPERTY RONDO_GRAPH "")
+
+function(rondo_target_name component out)
+  string(REPLACE "/" "_" name "rondo_${component}")
+  set(${out} ${name} PARENT_SCOPE)
+endfunction()
+
+# Precompiled headers: built once by the first component, shared by the rest.
+function(rondo_precompile target)
+  if(NOT RONDO_PCH)
+    return()
+  endif()
+  if(TARGET rondo_pch)
+    target_precompile_headers(${target} REUSE_FROM rondo_pch)
+  endif()
+endfunction()
+
+function(rondo_component component)
+  cmake_parse_arguments(ARG "" "" "DEPS;LIBS;PUBLIC_LIBS;TEST_LIBS" ${ARGN})
+  set(dir ${PROJECT_SOURCE_DIR}/src/${component})
+  file(GLOB headers CONFIGURE_DEPENDS ${dir}/*.h)
+  file(GLOB sources CONFIGURE_DEPENDS ${dir}/*.cc)
+  file(GLOB tests CONFIGURE_DEPENDS ${dir}/*_test.cc)
+  if(tests)
+    list(REMOVE_ITEM sources ${tests})
+  endif()
+  rondo_target_name(${component} target)
+  if(sources)
+    set(scope PUBLIC)
+    add_library(${target} STATIC ${sources})
+    target_link_libraries(${target} PRIVATE ${ARG_LIBS})
+    rondo_precompile(${target})
+  else()
+    set(scope INTERFACE)
+    add_library(${target} INTERFACE)
+  endif()
+  target_include_directories(${target} ${scope} ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(${target} ${scope} ${ARG_PUBLIC_LIBS})
+  # Each header must compile alone: CMake builds one source per header in `all_verify_interface_header_sets`.
+  target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/src FILES ${headers})
+  set_property(TARGET ${target} PROPERTY VERIFY_INTERFACE_HEADER_SETS ON)
+  foreach(dep IN LISTS ARG_DEPS)
+    rondo_target_name(${dep} dep_target)
+    target_link_libraries(${target} ${scope} ${dep_target})
+  endforeach()
+  list(JOIN ARG_DEPS "," deps)
+  set_property(GLOBAL APPEND PROPERTY RONDO_GRAPH "${component}:${deps}")
+  if(RONDO_TESTS AND tests)
+    add_executable(${target}_test ${tests})
+    target_link_libraries(${target}_test PRIVATE ${target} ${ARG_TEST_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
+    rondo_precompile(${target}_test)
+    gtest_discover_tests(${target}_test TEST_PREFIX "${component}." DISCOVERY_MODE PRE_TEST
+      WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  endif()
+endfunction()
+
+function(rondo_write_graph)
+  get_property(graph GLOBAL PROPERTY RONDO_GRAPH)
+  list(JOIN graph "\n" text)
+  file(WRITE ${CMAKE_BINARY_DIR}/layers.txt "${text}\n")
+endfunction()

@@ -1,0 +1,65 @@
+#include "base/file.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+namespace rondo::base {
+namespace {
+
+constexpr std::uintmax_t kLargestFile = 64u << 20;
+
+}  // namespace
+
+Result<std::string> ReadFile(const std::filesystem::path& path) {
+  std::error_code failure;
+  const auto status = std::filesystem::status(path, failure);
+  if (!std::filesystem::exists(status)) return Error{"no such file"};
+  if (std::filesystem::is_directory(status)) return Error{"is a folder, not a file"};
+  if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, failure) > kLargestFile) {
+    return Error{"is larger than 64 MiB"};
+  }
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return Error{std::strerror(errno)};
+  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (in.bad()) return Error{"could not be read to its end"};
+  return text;
+}
+
+Result<bool> WriteFileAtomically(const std::filesystem::path& path, std::string_view text) {
+  static std::atomic<unsigned> serial{0};
+  std::error_code failure;
+  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failure);
+  if (failure) return Error{failure.message()};
+  std::filesystem::path temporary = path;
+  temporary += fmt::format(".{}.{}.tmp", ::getpid(), serial++);
+  {
+    std::ofstream out(temporary, std::ios::binary);
+    if (!out) return Error{std::strerror(errno)};
+    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+    out.close();
+    if (!out) {
+      std::filesystem::remove(temporary, failure);
+      return Error{"could not be written to its end"};
+    }
+  }
+  // Keep the permissions of the file that is replaced.
+  if (const auto old = std::filesystem::status(path, failure); std::filesystem::exists(old)) {
+    std::filesystem::permissions(temporary, old.permissions(), failure);
+  }
+  std::filesystem::rename(temporary, path, failure);
+  if (failure) {
+    const std::string message = failure.message();
+    std::filesystem::remove(temporary, failure);
+    return Error{message};
+  }
+  return true;
+}
+
+}  // namespace rondo::base

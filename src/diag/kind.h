@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace rondo::diag {
+
+enum class Severity : uint8_t { kError, kWarning, kNote };
+
+/// Every kind of diagnostic that Rondo reports. The registry holds its id, explanation and minimal example; a golden
+/// case under testdata/ shows each one.
+enum class Kind : uint8_t {
+  // Reading any of the languages.
+  kSyntaxUnexpected,
+  kSyntaxIndentation,
+  kSyntaxTab,
+  kSyntaxUnknownCharacter,
+  kSyntaxUnterminatedString,
+  kSyntaxNumber,
+  kSyntaxNesting,
+  // Koord: names.
+  kKoordUndeclared,
+  kKoordDuplicate,
+  kKoordReservedName,
+  kKoordUnknownType,
+  kKoordUnknownMember,
+  kKoordAmbiguousPort,
+  // Koord: types.
+  kKoordTypeMismatch,
+  kKoordNotBoolean,
+  kKoordArity,
+  kKoordNotCallable,
+  kKoordNotIndexable,
+  kKoordUnknownSignature,
+  kKoordStreamMisuse,
+  // Koord: who may read and write what.
+  kKoordSensorWrite,
+  kKoordActuatorRead,
+  kKoordAllreadOwnership,
+  kKoordNotAssignable,
+  kKoordLostUpdate,
+  // Koord: control.
+  kKoordMisplacedStatement,
+  kKoordUnreachable,
+  kKoordRecursion,
+  kKoordNoEvent,
+  kKoordSectionOrder,
+  kKoordPointlessSpec,
+  kKoordSpecScope,
+  // Koord: proving.
+  kKoordUnboundedLoop,
+  kKoordNoInvariant,
+  kKoordNotInductive,
+  kKoordRefuted,
+  kKoordUndefinedOperation,
+  kKoordUnknown,
+  kKoordContradiction,
+  kKoordUnrealisable,
+  kKoordNeverEnabled,
+  kKoordUnusedAssumption,
+  kKoordDisagreement,
+  kCount_,  // not a kind
+};
+
+struct KindInfo {
+  Kind kind;
+  std::string_view id;        ///< what people type after `rondo explain`
+  Severity severity;
+  std::string_view summary;   ///< one line
+  std::string_view explanation;
+  std::string_view example;   ///< a program for which exactly this kind is reported
+  std::string_view verb;      ///< the verb that reports it: `check` or `prove`
+};
+
+const KindInfo& Info(Kind kind);
+
+/// nullptr when no kind has this id.
+const KindInfo* FindKind(std::string_view id);
+
+std::span<const KindInfo> AllKinds();
+
+std::string_view SeverityName(Severity severity);
+
+}  // namespace rondo::diag

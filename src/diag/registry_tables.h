@@ -1,0 +1,16 @@
+#pragma once
+
+#include <span>
+
+#include "diag/kind.h"
+
+/// The registry, one table per family; `registry.cc` joins them and insists that no kind is missing.
+namespace rondo::diag {
+
+std::span<const KindInfo> SyntaxKinds();
+std::span<const KindInfo> KoordNameKinds();
+std::span<const KindInfo> KoordTypeKinds();
+std::span<const KindInfo> KoordControlKinds();
+std::span<const KindInfo> KoordProofKinds();
+
+}  // namespace rondo::diag

@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "diag/render.h"
+
+namespace rondo::diag {
+namespace {
+
+struct Painter {
+  bool on;
+  std::string operator()(std::string_view code, std::string_view text) const {
+    return on ? fmt::format("\x1b[{}m{}\x1b[0m", code, text) : std::string(text);
+  }
+};
+
+std::string_view SeverityColour(Severity severity) {
+  switch (severity) {
+    case Severity::kError: return "1;31";
+    case Severity::kWarning: return "1;33";
+    case Severity::kNote: return "1;36";
+  }
+  return "";
+}
+
+struct Mark {
+  uint32_t line;
+  uint32_t column;  // 1-based
+  uint32_t width;
+  bool primary;
+  std::string message;
+};
+
+// A span over several lines is shown on its first line, up to the end of that line.
+Mark MakeMark(const SourceSet& sources, Span span, bool primary, std::string message) {
+  const Position begin = sources.Locate(span.file, span.begin);
+  const Position end = sources.Locate(span.file, std::max(span.begin, span.end));
+  const uint32_t line_end = CountCodePoints(sources.Line(span.file, begin.line)) + 1;
+  const uint32_t stop = end.line == begin.line ? end.column : line_end;
+  return {begin.line, begin.column, stop > begin.column ? stop - begin.column : 1, primary, std::move(message)};
+}
+
+// Tabs become one space so that carets stay below what they point at.
+std::string Flatten(std::string_view line) {
+  std::string result(line);
+  std::replace(result.begin(), result.end(), '\t', ' ');
+  return result;
+}
+
+}  // namespace
+
+std::string RenderText(const SourceSet& sources, const Diagnostic& d, Colour colour) {
+  const Painter paint{colour == Colour::kOn};
+  const std::string_view tone = SeverityColour(d.severity);
+  std::string out =
+      fmt::format("{}{} [{}]\n", paint(tone, fmt::format("{}: ", SeverityName(d.severity))), d.message, Info(d.kind).id);
+
+  // The primary file first, then the others in the order of their labels.
+  std::vector<FileId> files;
+  std::map<FileId, std::vector<Mark>> marks;
+  const auto add = [&](Span span, bool primary, const std::string& message) {
+    if (!span.file.valid()) return;
+    if (!marks.contains(span.file)) files.push_back(span.file);
+    marks[span.file].push_back(MakeMark(sources, span, primary, message));
+  };
+  add(d.span, true, d.label);
+  for (const Label& label : d.labels) add(label.span, false, label.message);
+
+  uint32_t last_line = 1;
+  for (auto& [file, list] : marks) {
+    std::stable_sort(list.begin(), list.end(), [](const Mark& a, const Mark& b) { return a.line < b.line; });
+    last_line = std::max(last_line, list.back().line);
+  }
+  const size_t gutter = std::max<size_t>(2, fmt::formatted_size("{}", last_line));
+  const std::string bar = paint("34", fmt::format("{:{}} |", "", gutter));
+  for (size_t i = 0; i < files.size(); ++i) {
+    const FileId file = files[i];
+    const std::vector<Mark>& list = marks[file];
+    const auto head = std::find_if(list.begin(), list.end(), [](const Mark& m) { return m.primary; });
+    const Mark& at = head != list.end() ? *head : list.front();
+    out += fmt::format("{:{}}{} {}:{}:{}\n{}\n", "", gutter, paint("34", i == 0 ? "-->" : ":::"), sources.path(file),
+                       at.line, at.column, bar);
+    uint32_t shown = 0;
+    for (const Mark& mark : list) {
+      if (mark.line != shown) {
+        shown = mark.line;
+        out += fmt::format("{} {}\n", paint("34", fmt::format("{:>{}} |", mark.line, gutter)),
+                           Flatten(sources.Line(file, mark.line)));
+      }
+      const std::string line(mark.width, mark.primary ? '^' : '-');
+      out += fmt::format("{} {:{}}{}{}\n", bar, "", mark.column - 1, paint(mark.primary ? tone : "34", line),
+                         mark.message.empty() ? "" : " " + mark.message);
+    }
+  }
+  for (const std::string& note : d.notes) {
+    size_t start = 0;
+    bool first = true;
+    while (start <= note.size()) {
+      const size_t end = std::min(note.find('\n', start), note.size());
+      out += fmt::format("{:{}} {} {}\n", "", gutter, paint("34", first ? "=" : "|"), note.substr(start, end - start));
+      first = false;
+      start = end + 1;
+    }
+  }
+  for (const std::string& help : d.helps) out += fmt::format("{} {}\n", paint("32", "help:"), help);
+  return out;
+}
+
+}  // namespace rondo::diag

@@ -1,0 +1,55 @@
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "driver/exit_status.h"
+#include "driver/load.h"
+#include "driver/terminal.h"
+#include "driver/verbs.h"
+#include "koord/check/check.h"
+
+namespace rondo::driver {
+namespace {
+
+struct Options {
+  std::vector<std::string> files;
+  std::string spec;
+  bool json = false;
+};
+
+int Run(const Options& options) {
+  Session session;
+  bool readable = true;
+  for (const std::string& file : options.files) {
+    const size_t before = session.diagnostics.errors();
+    const auto program = Load({file, options.spec, true}, session);
+    if (!program) {
+      readable = false;
+      continue;
+    }
+    if (session.diagnostics.errors() == before) koord::Check(session.sources, *program, session.diagnostics);
+  }
+  const bool good = readable && !session.diagnostics.has_errors();
+  if (options.json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const diag::Diagnostic& d : session.diagnostics.Sorted()) list.push_back(diag::RenderJson(session.sources, d));
+    Print(nlohmann::json{{"command", "check"}, {"ok", good}, {"diagnostics", list}}.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  } else {
+    PrintDiagnostics(session.sources, session.diagnostics);
+  }
+  return good ? kEstablished : kRejected;
+}
+
+}  // namespace
+
+void AddCheckVerb(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("check", "report every error and warning of Koord programs");
+  verb->add_option("FILE", options->files, "programs; `NAME.spec` beside one belongs to it")->required();
+  verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
+  verb->add_flag("--json", options->json, "the diagnostics as JSON on standard output");
+  verb->footer("example: rondo check examples/koord/delivery.koord");
+  verb->callback([options, &status] { status = Run(*options); });
+}
+
+}  // namespace rondo::driver

@@ -1,0 +1,74 @@
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "driver/exit_status.h"
+#include "driver/terminal.h"
+#include "driver/verbs.h"
+
+namespace rondo::driver {
+namespace {
+
+std::string Options(const CLI::App& verb) {
+  std::string text;
+  for (const CLI::Option* option : verb.get_options()) {
+    for (const std::string& name : option->get_lnames()) text += " --" + name;
+  }
+  return text.empty() ? "" : text.substr(1);
+}
+
+std::string Bash(const CLI::App& app) {
+  std::string verbs;
+  std::string cases;
+  for (const CLI::App* verb : app.get_subcommands({})) {
+    verbs += verb->get_name() + " ";
+    cases += fmt::format("    {}) words=\"{}\" ;;\n", verb->get_name(), Options(*verb));
+  }
+  return fmt::format(R"bash(_rondo() {{
+  local current=${{COMP_WORDS[COMP_CWORD]}} words=""
+  if [ "$COMP_CWORD" -eq 1 ]; then
+    words="{}--help --version"
+  else
+    case "${{COMP_WORDS[1]}}" in
+{}    esac
+  fi
+  case "$current" in
+    -*) COMPREPLY=($(compgen -W "$words" -- "$current")) ;;
+    *)
+      if [ "$COMP_CWORD" -eq 1 ]; then COMPREPLY=($(compgen -W "$words" -- "$current"))
+      elif [ "${{COMP_WORDS[1]}}" = explain ]; then
+        COMPREPLY=($(compgen -W "$(rondo explain 2>/dev/null | cut -d' ' -f1)" -- "$current"))
+      else COMPREPLY=($(compgen -f -- "$current")); fi ;;
+  esac
+}}
+complete -o filenames -F _rondo rondo
+)bash", verbs, cases);
+}
+
+std::string Fish(const CLI::App& app) {
+  std::string text;
+  for (const CLI::App* verb : app.get_subcommands({})) {
+    text += fmt::format("complete -c rondo -n __fish_use_subcommand -a {} -d '{}'\n", verb->get_name(), verb->get_description());
+    for (const CLI::Option* option : verb->get_options()) {
+      for (const std::string& name : option->get_lnames()) {
+        text += fmt::format("complete -c rondo -n '__fish_seen_subcommand_from {}' -l {}\n", verb->get_name(), name);
+      }
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+void AddCompletionVerb(CLI::App& app, int& status) {
+  auto shell = std::make_shared<std::string>();
+  CLI::App* verb = app.add_subcommand("completion", "print a completion script for a shell");
+  verb->add_option("SHELL", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  verb->footer("example: source <(rondo completion bash)");
+  verb->callback([shell, &app, &status] {
+    status = kEstablished;
+    if (*shell == "fish") return Print(Fish(app));
+    Print((*shell == "zsh" ? "autoload -U +X bashcompinit && bashcompinit\n" : "") + Bash(app));
+  });
+}
+
+}  // namespace rondo::driver

@@ -1,0 +1,41 @@
+#include "driver/load.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/file.h"
+#include "driver/terminal.h"
+#include "koord/syntax/parser.h"
+
+namespace rondo::driver {
+namespace {
+
+bool ParseFile(const std::string& path, Session& session, koord::Program& program) {
+  auto text = base::ReadFile(path);
+  if (!text.ok()) {
+    PrintFailure(fmt::format("cannot read `{}`: {}", path, text.error().message));
+    return false;
+  }
+  const diag::FileId file = session.sources.Add(path, std::move(text).value());
+  koord::Parse(session.sources, file, program, session.diagnostics);
+  return true;
+}
+
+}  // namespace
+
+std::optional<koord::Program> Load(const LoadOptions& options, Session& session) {
+  koord::Program program;
+  if (!ParseFile(options.file, session, program)) return std::nullopt;
+  if (!options.with_spec) return program;
+  std::string spec = options.spec;
+  if (spec.empty()) {
+    const std::filesystem::path beside = std::filesystem::path(options.file).replace_extension(".spec");
+    std::error_code ignored;
+    if (std::filesystem::exists(beside, ignored) && beside != options.file) spec = beside.string();
+  }
+  if (!spec.empty() && !ParseFile(spec, session, program)) return std::nullopt;
+  return program;
+}
+
+}  // namespace rondo::driver

@@ -1,0 +1,45 @@
+#include "driver/main.h"
+
+#include <signal.h>
+
+#include <cstdio>
+#include <exception>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "driver/exit_status.h"
+#include "driver/terminal.h"
+#include "driver/verbs.h"
+
+namespace rondo::driver {
+
+int Main(int argc, char** argv) {
+  // A reader that goes away (`rondo ... | head`) ends the output, not the program with a signal.
+  ::signal(SIGPIPE, SIG_IGN);
+  int status = kEstablished;
+  CLI::App app{"Rondo: write, prove and run programs for teams of robots", "rondo"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "rondo 0.1.0");
+  app.footer("example: rondo prove examples/koord/lineform.koord\n\n"
+             "exit status: 0 established, 1 wrong input, refuted or not inductive, 2 usage, 3 unknown, 4 a bug of ours");
+  AddCheckVerb(app, status);
+  AddFormatVerb(app, status);
+  AddProveVerb(app, status);
+  AddExplainVerb(app, status);
+  AddAstVerb(app, status);
+  AddCompletionVerb(app, status);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? kEstablished : kUsage;
+  } catch (const std::exception& error) {
+    PrintFailure(fmt::format("bug: {}", error.what()));
+    return kBug;
+  }
+  std::fflush(stdout);
+  return status;
+}
+
+}  // namespace rondo::driver

@@ -1,0 +1,118 @@
+#include "driver/prove_report.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "diag/render.h"
+
+namespace rondo::driver {
+
+using koord::Outcome;
+using koord::Verdict;
+
+std::string_view VerdictName(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kProved: return "proved";
+    case Verdict::kRefuted: return "refuted";
+    case Verdict::kNotInductive: return "not inductive";
+    case Verdict::kUnknown: return "unknown";
+    case Verdict::kConditional: return "conditional";
+  }
+  return "";
+}
+
+namespace {
+
+std::string Scope(const koord::ProveOptions& options) {
+  return options.robots ? fmt::format("N = {}", *options.robots) : "every N >= 1";
+}
+
+std::string Count(size_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
+
+const char* Word(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kProved: return "ok";
+    case Outcome::kFailed: return "FAIL";
+    case Outcome::kUnknown: return "?";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string ProveHeader(const std::string& file, const koord::Report& report, const koord::ProveOptions& options, size_t cached) {
+  std::string text = fmt::format("{}: {}, {}", file, Count(report.obligations, "obligation"), Scope(options));
+  if (cached > 0) text += fmt::format(" ({} answers from the cache)", cached);
+  return text + "\n";
+}
+
+std::string ProveTable(const koord::Report& report) {
+  size_t name_width = 0;
+  size_t cell_width = 0;
+  for (const koord::Row& row : report.rows) {
+    name_width = std::max(name_width, row.name.size());
+    for (const koord::Cell& cell : row.cells) cell_width = std::max(cell_width, cell.column.size() + 5);
+  }
+  std::string text;
+  for (const koord::Row& row : report.rows) {
+    std::string line = fmt::format("  {:{}}", row.name, name_width);
+    double seconds = 0;
+    for (const koord::Cell& cell : row.cells) {
+      line += fmt::format("  {:{}}", fmt::format("{} {}", cell.column, Word(cell.outcome)), cell_width);
+      seconds += cell.seconds;
+    }
+    text += fmt::format("{} {:8.2f} s\n", line, seconds);
+  }
+  return text;
+}
+
+std::string ProveSummary(const koord::Report& report, const koord::ProveOptions& options, int status) {
+  std::string text = "\n";
+  const std::string scope = options.robots ? fmt::format("for N = {}", *options.robots) : "for every N";
+  for (const Verdict verdict : {Verdict::kProved, Verdict::kRefuted, Verdict::kNotInductive, Verdict::kConditional, Verdict::kUnknown}) {
+    std::vector<std::string> names;
+    for (const koord::Row& row : report.rows) {
+      if (row.verdict != verdict) continue;
+      names.push_back(row.because.empty() ? row.name : fmt::format("{} ({})", row.name, row.because));
+    }
+    if (!names.empty()) text += fmt::format("{}{}: {}\n", VerdictName(verdict), verdict == Verdict::kProved ? " " + scope : "", fmt::join(names, ", "));
+  }
+  if (!report.assumed.empty()) text += fmt::format("assumed: {}\n", fmt::join(report.assumed, "; "));
+  if (!report.unused.empty()) text += fmt::format("unused: {}\n", fmt::join(report.unused, "; "));
+  if (!report.unconstrained.empty()) text += fmt::format("functions that may return anything: {}\n", fmt::join(report.unconstrained, ", "));
+  if (options.cross_check != nullptr) {
+    text += fmt::format("cross-checked with {}: {} agree{}{}\n", options.cross_check->name(), Count(report.cross_checked, "obligation"),
+                        report.cross_checked == 1 ? "s" : "", report.cross_unknown > 0 ? fmt::format(", {} undecided there", report.cross_unknown) : "");
+  }
+  if (report.interrupted) text += "interrupted: what is marked `?` was not decided\n";
+  for (const std::string& problem : report.problems) text += fmt::format("could not write {}\n", problem);
+  if (status != 0) text += fmt::format("exit {}\n", status);
+  return text;
+}
+
+nlohmann::json ProveJson(const Session& session, const std::string& file, const koord::Report* report, int status) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const diag::Diagnostic& d : session.diagnostics.Sorted()) list.push_back(diag::RenderJson(session.sources, d));
+  nlohmann::json json{{"command", "prove"}, {"file", file}, {"status", status}, {"diagnostics", list}};
+  if (report == nullptr) return json;
+  json["invariants"] = nlohmann::json::array();
+  for (const koord::Row& row : report->rows) {
+    nlohmann::json entry{{"name", row.name}, {"verdict", VerdictName(row.verdict)}};
+    if (!row.because.empty()) entry["because"] = row.because;
+    for (const koord::Cell& cell : row.cells) {
+      nlohmann::json c{{"case", cell.column}, {"outcome", Word(cell.outcome)}, {"seconds", cell.seconds}, {"used", cell.core}};
+      if (!cell.reason.empty()) c["reason"] = cell.reason;
+      entry["obligations"].push_back(std::move(c));
+    }
+    json["invariants"].push_back(std::move(entry));
+  }
+  json["assumed"] = report->assumed;
+  json["unused"] = report->unused;
+  json["unconstrained"] = report->unconstrained;
+  json["cross_checked"] = report->cross_checked;
+  return json;
+}
+
+}  // namespace rondo::driver

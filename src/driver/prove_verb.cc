@@ -1,0 +1,118 @@
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "driver/exit_status.h"
+#include "driver/interrupt.h"
+#include "driver/load.h"
+#include "driver/prove_report.h"
+#include "driver/terminal.h"
+#include "driver/verbs.h"
+#include "koord/check/check.h"
+#include "solve/cache/caching_solver.h"
+#include "solve/smtlib/smtlib_solver.h"
+#include "solve/z3/z3_solver.h"
+
+namespace rondo::driver {
+namespace {
+
+struct Options {
+  std::string file;
+  std::string spec;
+  int64_t robots = 0;
+  unsigned jobs = 0;
+  double timeout = 10;
+  std::string smt_out;
+  std::string cross_check;
+  bool no_cache = false;
+  bool json = false;
+};
+
+koord::ProveOptions ToProveOptions(const Options& options) {
+  koord::ProveOptions prove;
+  if (options.robots > 0) prove.robots = options.robots;
+  prove.jobs = options.jobs;
+  prove.timeout = std::chrono::milliseconds(static_cast<int64_t>(options.timeout * 1000));
+  prove.smt_out = options.smt_out;
+  return prove;
+}
+
+int StatusOf(const koord::Report& report) {
+  if (report.disagreement) return kBug;
+  if (report.AnyFailed()) return kRejected;
+  if (!report.problems.empty()) return kRejected;
+  return report.AllProved() ? kEstablished : kUndecided;
+}
+
+int Run(const Options& options) {
+  Session session;
+  const auto program = Load({options.file, options.spec, true}, session);
+  if (!program) return kRejected;
+  koord::Model model;
+  const bool parsed = !session.diagnostics.has_errors();
+  if (parsed) model = koord::Check(session.sources, *program, session.diagnostics);
+  const auto finish_early = [&](int status) {
+    if (options.json) Print(ProveJson(session, options.file, nullptr, status).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    else PrintDiagnostics(session.sources, session.diagnostics);
+    return status;
+  };
+  if (session.diagnostics.has_errors()) return finish_early(kRejected);
+  if (model.invariants.empty()) {
+    session.diagnostics.Report(diag::Kind::kKoordNoInvariant, program->item_spans.back(), "there is nothing to prove")
+        .Help("state what must always hold: `invariant NAME: ...`, here or in the `.spec` file beside the program");
+    return finish_early(kRejected);
+  }
+  const solve::z3::Z3Solver z3;
+  const solve::cache::ProofCache cache(options.no_cache ? std::filesystem::path() : solve::cache::ProofCache::DefaultFolder());
+  const solve::cache::CachingSolver caching(z3, cache);
+  const solve::smtlib::SmtLibSolver other(options.cross_check);
+  koord::ProveOptions prove = ToProveOptions(options);
+  prove.solver = options.no_cache ? static_cast<const solve::Solver*>(&z3) : &caching;
+  if (!options.cross_check.empty()) prove.cross_check = &other;
+  koord::Report report;
+  {
+    ProgressLine line;
+    const InterruptScope interrupt(prove.stop);
+    prove.progress = [&](size_t done, size_t total, const std::string& what) {
+      line.Show(fmt::format("[{}/{}] {}", done, total, what));
+    };
+    report = koord::Prove(session.sources, model, prove, session.diagnostics);
+  }
+  if (report.rows.empty()) return finish_early(kRejected);
+  const int status = StatusOf(report);
+  if (options.json) {
+    Print(ProveJson(session, options.file, &report, status).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    return status;
+  }
+  Print(ProveHeader(options.file, report, prove, options.no_cache ? 0 : caching.hits()));
+  Print(ProveTable(report));
+  if (!session.diagnostics.all().empty()) {
+    Print("\n");
+    PrintDiagnostics(session.sources, session.diagnostics);
+  }
+  Print(ProveSummary(report, prove, status));
+  return status;
+}
+
+}  // namespace
+
+void AddProveVerb(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("prove", "prove the invariants of a Koord program for any number of robots");
+  verb->add_option("FILE", options->file, "the program; `NAME.spec` beside it belongs to it")->required();
+  verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
+  verb->add_option("--robots", options->robots, "fix the number of robots; default: every N >= 1")->check(CLI::Range(int64_t{1}, int64_t{1'000'000}));
+  verb->add_option("--jobs", options->jobs, "threads; default: one for each core");
+  verb->add_option("--timeout", options->timeout, "seconds for each question to the solver; default: 10")->check(CLI::Range(0.001, 1e6));
+  verb->add_option("--smt-out", options->smt_out, "write every obligation as SMT-LIB 2 into this folder");
+  verb->add_option("--cross-check", options->cross_check, "decide every obligation again with this solver, such as cvc5");
+  verb->add_flag("--no-cache", options->no_cache, "neither use nor fill the proof cache");
+  verb->add_flag("--json", options->json, "the verdicts as JSON on standard output");
+  verb->footer(
+      "examples:\n  rondo prove examples/koord/lineform.koord\n"
+      "  rondo prove --robots 15 --cross-check cvc5 examples/koord/delivery.koord\n\n"
+      "exit status: 0 everything proved, 1 something refuted or not inductive, 3 something undecided");
+  verb->callback([options, &status] { status = Run(*options); });
+}
+
+}  // namespace rondo::driver

@@ -1,0 +1,57 @@
+#include "driver/terminal.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+namespace rondo::driver {
+
+void Print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+
+void PrintError(const std::string& text) {
+  std::fflush(stdout);
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+diag::Colour ErrorColour() {
+  const char* no_colour = std::getenv("NO_COLOR");
+  const bool wanted = no_colour == nullptr || *no_colour == '\0';
+  return wanted && ::isatty(STDERR_FILENO) != 0 ? diag::Colour::kOn : diag::Colour::kOff;
+}
+
+void PrintDiagnostics(const diag::SourceSet& sources, const diag::Diagnostics& diagnostics) {
+  std::string text;
+  size_t errors = 0;
+  size_t warnings = 0;
+  for (const diag::Diagnostic& d : diagnostics.Sorted()) {
+    text += diag::RenderText(sources, d, ErrorColour()) + "\n";
+    if (d.severity == diag::Severity::kError) ++errors;
+    if (d.severity == diag::Severity::kWarning) ++warnings;
+  }
+  const auto count = [](size_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); };
+  if (errors > 0 && warnings > 0) text += fmt::format("{}, {}\n", count(errors, "error"), count(warnings, "warning"));
+  else if (errors > 0) text += count(errors, "error") + "\n";
+  else if (warnings > 0) text += count(warnings, "warning") + "\n";
+  PrintError(text);
+}
+
+void PrintFailure(const std::string& message) { PrintError(fmt::format("rondo: {}\n", message)); }
+
+ProgressLine::ProgressLine() : on_(::isatty(STDERR_FILENO) != 0) {}
+
+void ProgressLine::Show(const std::string& text) {
+  if (!on_) return;
+  shown_ = true;
+  PrintError("\r\x1b[K" + text);
+}
+
+void ProgressLine::Clear() {
+  if (shown_) PrintError("\r\x1b[K");
+  shown_ = false;
+}
+
+}  // namespace rondo::driver

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+
+#include "diag/diagnostic.h"
+#include "diag/render.h"
+
+namespace rondo::driver {
+
+/// Writes text to standard output. A reader that went away is not an error.
+void Print(const std::string& text);
+/// Writes text to standard error, after what is already on its way to standard output.
+void PrintError(const std::string& text);
+
+/// Colours on standard error: if it is a terminal and NO_COLOR is not set.
+diag::Colour ErrorColour();
+
+/// All diagnostics, sorted, to standard error, and a closing line that counts them.
+void PrintDiagnostics(const diag::SourceSet& sources, const diag::Diagnostics& diagnostics);
+
+/// `rondo: message`, for what went wrong outside any source file.
+void PrintFailure(const std::string& message);
+
+/// A line that is overwritten in place; nothing if standard error is no terminal.
+class ProgressLine {
+ public:
+  ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  ~ProgressLine() { Clear(); }
+  void Show(const std::string& text);
+  void Clear();
+
+ private:
+  bool on_;
+  bool shown_ = false;
+};
+
+}  // namespace rondo::driver

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/App.hpp>
+
+/// The verbs of the command line. Each adds itself to the application and leaves its exit status in `status`.
+namespace rondo::driver {
+
+void AddCheckVerb(CLI::App& app, int& status);
+void AddFormatVerb(CLI::App& app, int& status);
+void AddAstVerb(CLI::App& app, int& status);
+void AddProveVerb(CLI::App& app, int& status);
+void AddExplainVerb(CLI::App& app, int& status);
+void AddCompletionVerb(CLI::App& app, int& status);
+
+}  // namespace rondo::driver

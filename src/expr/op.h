@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace rondo::expr {
+
+enum class Op : uint8_t {
+  kBool,      // payload 0 or 1
+  kNumber,    // payload indexes the arena's numbers; sort Int or Real
+  kMember,    // payload: member of an enumeration
+  kVariable,  // payload: symbol without parameters
+  kApply,     // payload: symbol
+  kNot,
+  kAnd,
+  kOr,
+  kEq,
+  kIte,
+  kForall,  // payload: number of variables; args: variables, body
+  kExists,
+  kAdd,
+  kMul,
+  kDivide,
+  kIntDiv,
+  kMod,
+  kLe,
+  kLt,
+  kToReal,
+  kSelect,
+  kStore,
+  kRecord,
+  kField,  // payload: field
+  kListMake,
+  kListLength,
+  kListAt,
+  kListAppend,
+  kListRemove,
+  kListSet,
+};
+
+/// Every simplification that a constructor of `Arena` may apply.
+enum class Rewrite : uint8_t {
+  kNotConstant,
+  kNotNot,
+  kNotComparison,     // not a <= b  ->  b < a
+  kJunctionFlatten,   // and(and(a, b), c)  ->  and(a, b, c)
+  kJunctionNeutral,   // and(a, true)  ->  a
+  kJunctionZero,      // and(a, false)  ->  false
+  kJunctionSame,      // and(a, a)  ->  a
+  kJunctionOpposite,  // and(a, not a)  ->  false
+  kEqReflexive,
+  kEqConstants,
+  kEqBoolean,   // a = true  ->  a
+  kEqOrder,     // b = a  ->  a = b
+  kEqRecords,   // (a, b) = (c, d)  ->  a = c and b = d
+  kEqDistance,  // a = a + 1  ->  false
+  kIteConstant,
+  kIteSame,
+  kIteNot,      // if not c then a else b  ->  if c then b else a
+  kIteBoolean,  // if c then true else b  ->  c or b
+  kQuantifierUnused,
+  kAddNormal,  // linear normal form: one coefficient per term, one constant
+  kMulConstants,
+  kMulDistribute,  // 2 * (a + b)  ->  2a + 2b
+  kMulOrder,
+  kDivideConstant,  // a / 2  ->  0.5 * a
+  kIntDivConstants,
+  kModConstants,
+  kCompareDistance,  // a <= a + 1  ->  true
+  kToRealConstant,
+  kSelectStore,  // store(a, i, v)[j]  ->  if i = j then v else a[j]
+  kStoreStore,   // store(store(a, i, v), i, w)  ->  store(a, i, w)
+  kFieldRecord,  // (a, b).0  ->  a
+  kFieldIte,     // (if c then r else s).0  ->  if c then r.0 else s.0
+  kRecordFields,  // (r.0, r.1)  ->  r
+  kLengthMake,
+  kAtMake,
+  kCount_,
+};
+
+std::string_view Name(Op op);
+std::string_view Name(Rewrite rewrite);
+
+}  // namespace rondo::expr

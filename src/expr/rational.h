@@ -1,0 +1,53 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace rondo::expr {
+
+/// An exact rational number of any size (GMP). A value type; copies are deep.
+class Rational {
+ public:
+  Rational(int64_t value = 0);  // NOLINT: implicit by design
+  Rational(const Rational& other);
+  Rational(Rational&& other) noexcept;
+  Rational& operator=(Rational other) noexcept;
+  ~Rational();
+
+  /// Reads `12`, `1.5`, `.5`, `5.`, `1e-3`, `-2/3` exactly. nullopt for anything else, for a zero denominator, and for
+  /// exponents beyond +-400, which would only exhaust memory.
+  static std::optional<Rational> Parse(std::string_view text);
+
+  friend Rational operator+(const Rational& a, const Rational& b);
+  friend Rational operator-(const Rational& a, const Rational& b);
+  friend Rational operator*(const Rational& a, const Rational& b);
+  /// Requires b != 0.
+  friend Rational operator/(const Rational& a, const Rational& b);
+  friend bool operator==(const Rational& a, const Rational& b);
+  friend std::strong_ordering operator<=>(const Rational& a, const Rational& b);
+
+  bool IsZero() const;
+  bool IsInteger() const;
+  Rational Floor() const;
+  double ToDouble() const;
+  size_t Hash() const;
+  /// Numerator and denominator in decimal; the sign is the numerator's.
+  std::string Numerator() const;
+  std::string Denominator() const;
+  /// `3`, `0.25`, and `1/3` where no short decimal is exact.
+  std::string ToString() const;
+
+ private:
+  struct Impl;
+  explicit Rational(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The quotient of SMT-LIB's `div`: rounds so that 0 <= a - b*q < |b|. Requires b != 0.
+Rational EuclideanQuotient(const Rational& a, const Rational& b);
+
+}  // namespace rondo::expr

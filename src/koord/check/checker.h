@@ -1,0 +1,107 @@
+#pragma once
+
+#include <set>
+
+#include "koord/check/check.h"
+
+namespace rondo::koord {
+
+/// The checker. Its rules are split over files by what they are about: declarations, expressions, calls, statements,
+/// specifications.
+class Checker {
+ public:
+  Checker(const diag::SourceSet& sources, const Program& program, diag::Diagnostics& diagnostics)
+      : sources_(sources), program_(program), exprs_(program.exprs), diagnostics_(diagnostics) {}
+  Model Run();
+
+ private:
+  enum class Place : uint8_t { kInit, kEvent, kFunction, kSpec };
+
+  // declarations.cc
+  void DeclareTypes();
+  void DeclareAll();
+  void DeclareModule(const ModuleDef& module);
+  void DeclareVariable(VariableKind kind, const std::string& module, const Decl& decl);
+  void DeclareFunction(const FunctionDef& def);
+  bool Claim(const std::string& name, diag::Span span);
+  TypeId TypeOf(const lang::TypeSyntax& syntax);
+  TypeId TypeOf(const Decl& decl);
+  TypeId WithDimensions(TypeId base, const std::vector<ExprId>& dimensions);
+  void CheckOrder();
+
+  // names.cc
+  TypeId Name(ExprId id, const lang::Expr& e);
+  TypeId Field(ExprId id, const lang::Expr& e);
+  TypeId Index(ExprId id, const lang::Expr& e);
+  TypeId ReadVariable(ExprId id, size_t variable, RefKind kind);
+  int FindVariable(const std::string& name) const;
+  int FindPort(const std::string& module, const std::string& port, diag::Span span, bool report);
+  bool IsModule(const std::string& name) const { return modules_.contains(name); }
+  bool IsModuleName(ExprId id) const;
+  TypeId FieldOf(ExprId id, const lang::Expr& e, TypeId base);
+  void Undeclared(const std::string& name, diag::Span span);
+
+  // expressions.cc
+  TypeId Expr(ExprId id);
+  TypeId Visit(ExprId id, const lang::Expr& e);
+  TypeId Unary(const lang::Expr& e);
+  TypeId Binary(const lang::Expr& e);
+  TypeId Arithmetic(const lang::Expr& e, TypeId a, TypeId b);
+  TypeId Comparison(const lang::Expr& e, TypeId a, TypeId b);
+  TypeId Membership(const lang::Expr& e, TypeId a);
+  TypeId Quantifier(ExprId id, const lang::Expr& e);
+  TypeId List(const lang::Expr& e);
+  void NeedBool(ExprId e, std::string_view what);
+  void NeedType(ExprId e, TypeId wanted, std::string_view what);
+  TypeId Mismatch(diag::Span span, std::string message);
+  void Set(ExprId id, RefKind kind, size_t index) { model_.ref_of[id.index()] = {kind, static_cast<uint32_t>(index)}; }
+  uint32_t Bind(const std::string& name, TypeId type, diag::Span span);
+
+  // calls.cc
+  TypeId Call(ExprId id, const lang::Expr& e);
+  TypeId CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin);
+  TypeId CallFunction(ExprId id, const lang::Expr& e, size_t function);
+  TypeId CallMethod(ExprId id, const lang::Expr& e);
+  size_t FunctionNamed(const std::string& name, size_t arity, diag::Span span);
+  bool Arity(const lang::Expr& e, size_t least, size_t most, std::string_view name);
+  void CheckRecursion();
+  void CheckSignatures();
+
+  // statements.cc
+  void Body(const std::vector<Stmt>& body);
+  void Statement(const Stmt& stmt);
+  void Assign(const Stmt& stmt);
+  /// The type that can be assigned; checks that writing is allowed. Invalid after a report.
+  TypeId Target(ExprId id);
+  TypeId TargetRoot(ExprId id, size_t variable);
+  void LoopIn(const Stmt& stmt);
+  void LoopRange(const Stmt& stmt);
+
+  // specifications.cc
+  void Specifications();
+  void Assume(const AssumeDef& def);
+  void Summary(const SummaryDef& def);
+  void Invariant(const InvariantDef& def);
+  /// Reports each name in `e` that this kind of specification must not mention.
+  void RestrictScope(ExprId e, const AssumeDef* port, std::string_view what);
+
+  const diag::SourceSet& sources_;
+  const Program& program_;
+  const lang::ExprPool& exprs_;
+  diag::Diagnostics& diagnostics_;
+  Model model_;
+
+  std::map<std::string, diag::Span> claimed_;
+  std::set<std::string> modules_;
+  std::map<std::string, std::pair<TypeId, uint32_t>> enum_members_;
+  std::vector<uint32_t> scope_;  // bindings that are visible, innermost last
+  std::map<int, std::set<size_t>> calls_;  // function (-1: none) -> functions that its body calls
+  Place place_ = Place::kSpec;
+  int function_ = -1;
+  int loops_ = 0;
+  int atomic_ = 0;
+  bool old_allowed_ = false;
+  bool writing_ = false;  // the target of an assignment may be an actuator
+};
+
+}  // namespace rondo::koord

@@ -1,0 +1,218 @@
+#include "koord/prove/problem.h"
+
+#include "expr/lists.h"
+#include "expr/substitute.h"
+#include "solve/instantiate.h"
+
+namespace rondo::koord {
+
+using solve::Assertion;
+
+namespace {
+
+void Append(std::vector<Assertion>& to, std::vector<Assertion> from) {
+  for (Assertion& a : from) to.push_back(std::move(a));
+}
+
+}  // namespace
+
+Problems::Problems(expr::Arena& arena, const Model& model, const Options& options, diag::Diagnostics& diagnostics)
+    : arena_(arena),
+      model_(model),
+      options_(options),
+      vocabulary_(arena, model, options.robots),
+      executor_(vocabulary_, diagnostics, ExecutionOptions{.expand_robots = options.expand}),
+      theory_(vocabulary_, executor_),
+      round_(vocabulary_, executor_, Round::Kind::kEvents) {
+  if (!model.inits.empty()) init_.emplace(vocabulary_, executor_, Round::Kind::kInit);
+  robot_ = options.expand ? arena.IntNumber(0) : arena.FreshConstant("robot", arena.Int());
+}
+
+std::vector<TermId> Problems::Everyone() {
+  std::vector<TermId> result;
+  if (options_.expand) {
+    for (int64_t r = 0; r < *options_.robots; ++r) result.push_back(arena_.IntNumber(r));
+  }
+  return result;
+}
+
+// The negation of `goal` for arbitrary but fixed values of its universal variables.
+TermId Problems::Refute(TermId goal) {
+  switch (arena_.op(goal)) {
+    case expr::Op::kForall: {
+      const std::vector<TermId> args(arena_.args(goal).begin(), arena_.args(goal).end());
+      expr::Substitution map;
+      for (size_t i = 0; i + 1 < args.size(); ++i) {
+        map[args[i]] = arena_.FreshConstant("some " + arena_.symbol(arena_.symbol_of(args[i])).name, arena_.sort_of(args[i]));
+      }
+      return Refute(Substitute(arena_, args.back(), map));
+    }
+    case expr::Op::kAnd:
+    case expr::Op::kOr: {
+      const bool conjunction = arena_.op(goal) == expr::Op::kAnd;
+      std::vector<TermId> parts;
+      for (const TermId part : std::vector<TermId>(arena_.args(goal).begin(), arena_.args(goal).end())) parts.push_back(Refute(part));
+      return conjunction ? arena_.Or(std::move(parts)) : arena_.And(std::move(parts));
+    }
+    default: return arena_.Not(goal);  // nothing universal is in sight
+  }
+}
+
+std::vector<Assertion> Problems::Everything(const View& view) {
+  std::vector<Assertion> result = theory_.Invariants(view);
+  Append(result, theory_.PortFacts(view));
+  return result;
+}
+
+Problem Problems::Ground(std::vector<Assertion> assertions, std::vector<TermId> participants) {
+  // The background comes last: only now is it known which parts of the vocabulary are in use.
+  Append(assertions, theory_.Background());
+  if (options_.expand && vocabulary_.uses_dist()) assertions.push_back({vocabulary_.DistDefinition(), ""});
+  Problem problem;
+  problem.participants = participants;
+  participants.push_back(robot_);
+  std::unordered_set<TermId> lists_done;
+  for (int pass = 0; pass < 4; ++pass) {
+    solve::Ground ground = solve::Instantiate(arena_, assertions, {{arena_.Int(), participants}});
+    std::vector<TermId> formulas;
+    for (const Assertion& a : ground.assertions) formulas.push_back(a.formula);
+    const std::vector<TermId> axioms = expr::ListAxioms(arena_, formulas, lists_done);
+    problem.query.arena = &arena_;
+    problem.query.assertions = std::move(ground.assertions);
+    problem.complete = ground.complete;
+    if (axioms.empty()) break;
+    for (const TermId axiom : axioms) assertions.push_back({axiom, ""});
+  }
+  problem.assertions = std::move(assertions);
+  return problem;
+}
+
+Problem Problems::Initially(size_t invariant) {
+  const View& first = round_.start();
+  const TermId refuted = Refute(theory_.Invariant(invariant, first));
+  std::vector<Assertion> assertions{{refuted, ""}};
+  std::vector<TermId> participants = Everyone();
+  if (init_) {
+    Append(assertions, init_->Relate(refuted, Everyone()));
+    Append(assertions, theory_.DeclaredValues(init_->start()));
+    participants = init_->participants();
+  } else {
+    Append(assertions, theory_.DeclaredValues(first));
+  }
+  Append(assertions, theory_.Initially(first));
+  Append(assertions, theory_.PortFacts(first));
+  return Ground(std::move(assertions), std::move(participants));
+}
+
+Problem Problems::Step(size_t invariant, size_t action, bool reachable) {
+  const TermId refuted = Refute(theory_.Invariant(invariant, round_.end()));
+  std::vector<Assertion> assertions{{refuted, ""}};
+  Append(assertions, round_.Relate(refuted, Everyone()));
+  const std::vector<TermId> participants = round_.participants();
+  // `action` is the first that anybody takes.
+  std::vector<TermId> somebody;
+  for (const TermId r : participants) {
+    somebody.push_back(round_.Acts(r, action));
+    std::vector<TermId> later{round_.Acts(r, 0)};
+    for (size_t a = std::max<size_t>(action, 1); action > 0 && a < columns(); ++a) later.push_back(round_.Acts(r, a));
+    assertions.push_back({arena_.Or(std::move(later)), ""});
+  }
+  if (action > 0) assertions.push_back({arena_.Or(std::move(somebody)), ""});
+  for (const TermId r : participants) Append(assertions, theory_.PortPromises(round_, r));
+  Append(assertions, Everything(round_.start()));
+  Append(assertions, theory_.PortFacts(round_.end()));
+  if (reachable) {
+    Append(assertions, theory_.DeclaredValues(round_.start()));
+    Append(assertions, theory_.Initially(round_.start()));
+  }
+  return Ground(std::move(assertions), participants);
+}
+
+const std::vector<DefinednessCheck>& Problems::ChecksOf(size_t action) {
+  return (init_ && action == 0 ? *init_ : round_).EffectOf(action, robot_).checks;
+}
+
+// Action 0 is `init`: it runs from the declared values.
+Problem Problems::Defined(size_t action) {
+  std::vector<TermId> undefined;
+  for (const DefinednessCheck& check : ChecksOf(action)) undefined.push_back(arena_.And(check.reached, Refute(check.holds)));
+  return Undefined(action, arena_.Or(std::move(undefined)), robot_);
+}
+
+Problem Problems::DefinedAt(size_t action, size_t check, int64_t robot) {
+  const TermId r = arena_.IntNumber(robot);
+  const DefinednessCheck& c = (init_ && action == 0 ? *init_ : round_).EffectOf(action, r).checks[check];
+  return Undefined(action, arena_.And(c.reached, Refute(c.holds)), r);
+}
+
+Problem Problems::Undefined(size_t action, TermId undefined, TermId robot) {
+  std::vector<Assertion> assertions{{undefined, ""}, {vocabulary_.IsRobot(robot), ""}};
+  if (action == 0) {
+    Append(assertions, theory_.DeclaredValues(init_->start()));
+    Append(assertions, theory_.PortFacts(init_->start()));
+  } else {
+    Append(assertions, Everything(round_.start()));
+  }
+  return Ground(std::move(assertions), {});
+}
+
+Problem Problems::SomeInitialState() {
+  std::vector<Assertion> assertions{{vocabulary_.IsRobot(robot_), ""}};
+  const View& first = round_.start();
+  if (init_) {
+    // The state of one robot after `init` is enough to meet what is assumed of each.
+    Append(assertions, init_->Relate(arena_.True(), {robot_}));
+    Append(assertions, theory_.DeclaredValues(init_->start()));
+  } else {
+    Append(assertions, theory_.DeclaredValues(first));
+  }
+  Append(assertions, theory_.Initially(first));
+  Append(assertions, theory_.PortFacts(first));
+  return Ground(std::move(assertions), {});
+}
+
+Problem Problems::SomeValues(size_t action) {
+  std::vector<Assertion> assertions{{vocabulary_.IsRobot(robot_), ""}};
+  const Effect& effect = round_.EffectOf(action, robot_);
+  // Mentions each value that the action computes, so that the summaries of the functions it calls come into play.
+  std::vector<TermId> mentioned = effect.value;
+  mentioned.push_back(effect.enabled);
+  for (const TermId value : mentioned) {
+    if (value.valid()) assertions.push_back({arena_.Eq(arena_.FreshConstant("value", arena_.sort_of(value)), value), ""});
+  }
+  Append(assertions, theory_.PortFacts(round_.start()));
+  return Ground(std::move(assertions), {});
+}
+
+Problem Problems::SomeEnabled(size_t action) {
+  std::vector<Assertion> assertions{{vocabulary_.IsRobot(robot_), ""},
+                                    {round_.EffectOf(action, robot_).enabled, ""}};
+  Append(assertions, Everything(round_.start()));
+  return Ground(std::move(assertions), {});
+}
+
+Problem Problems::SomePromise(size_t p, bool with) {
+  const Theory::Promise promise = theory_.Promises(round_.start(), round_.end(), robot_)[p];
+  std::vector<Assertion> assertions{{vocabulary_.IsRobot(robot_), ""}, {promise.condition, ""}};
+  if (with) {
+    assertions.push_back({promise.promise, promise.name});
+    for (size_t v = 0; v < model_.variables.size(); ++v) {
+      // The environment moves sensors only.
+      if (model_.variables[v].kind != VariableKind::kActuator) continue;
+      assertions.push_back({arena_.Eq(arena_.Select(round_.end().value[v], robot_), arena_.Select(round_.start().value[v], robot_)), ""});
+    }
+    Append(assertions, theory_.PortFacts(round_.end()));
+  }
+  Append(assertions, theory_.PortFacts(round_.start()));
+  return Ground(std::move(assertions), {});
+}
+
+Problem Problems::PromiseNow(size_t p) {
+  const Theory::Promise promise = theory_.Promises(round_.start(), round_.start(), robot_)[p];
+  std::vector<Assertion> assertions{
+      {vocabulary_.IsRobot(robot_), ""}, {promise.condition, ""}, {arena_.Not(promise.promise), ""}};
+  Append(assertions, Everything(round_.start()));
+  return Ground(std::move(assertions), {});
+}
+
+}  // namespace rondo::koord

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "koord/prove/theory.h"
+
+namespace rondo::koord {
+
+/// A question whose answer should be "unsatisfiable" (an obligation) or "satisfiable" (a sanity check).
+struct Problem {
+  std::vector<solve::Assertion> assertions;  ///< with quantifiers
+  solve::Query query;                        ///< without; see `Problems::Ground`
+  bool complete = false;  ///< nothing was lost on the way: satisfiable means satisfiable
+  std::vector<TermId> participants;
+};
+
+/// States the proof obligations of docs/theory.md for one program and one number of robots: any (symbolic), or a
+/// small fixed one with all quantifiers over robots spelled out, whose models are witnesses.
+class Problems {
+ public:
+  struct Options {
+    std::optional<int64_t> robots;
+    bool expand = false;
+  };
+  Problems(expr::Arena& arena, const Model& model, const Options& options, diag::Diagnostics& diagnostics);
+
+  Theory& theory() { return theory_; }
+  Round& round() { return round_; }
+  bool has_init() const { return init_.has_value(); }
+  size_t columns() const { return round_.actions().size(); }
+
+  /// [Init] every initial state satisfies invariant i.
+  Problem Initially(size_t invariant);
+  /// [Step] from a state that satisfies all invariants, invariant i holds at every moment of a round in which `action`
+  /// is the first, in program order, that a participant takes (0: all skip). `reachable`: the state is initial as well.
+  Problem Step(size_t invariant, size_t action, bool reachable);
+  /// [Def] every operation of the action is defined whenever control reaches it.
+  Problem Defined(size_t action);
+  /// The same for one of its operations and one robot of a fixed team.
+  Problem DefinedAt(size_t action, size_t check, int64_t robot);
+  const std::vector<DefinednessCheck>& ChecksOf(size_t action);
+
+  /// [Sat] there is an initial state.
+  Problem SomeInitialState();
+  /// [Sat] general assumptions and summaries allow the values that the action computes.
+  Problem SomeValues(size_t action);
+  /// [Sat] some state that satisfies the invariants enables the event.
+  Problem SomeEnabled(size_t action);
+  /// [Sat] where the condition of promise `p` holds, the environment can keep it; `with`: keep it, else only the condition.
+  Problem SomePromise(size_t p, bool with);
+  /// [Now] where the invariants and the condition of promise `p` hold, the promise holds at t = 0.
+  Problem PromiseNow(size_t p);
+  std::vector<Theory::Promise> promises() { return theory_.Promises(round_.settled(), round_.end(), robot_); }
+
+  /// The robot of the problems about one robot.
+  TermId robot() const { return robot_; }
+  TermId size() const { return vocabulary_.robots(); }
+  bool uses_dist() const { return vocabulary_.uses_dist(); }
+  Vocabulary& vocabulary() { return vocabulary_; }
+
+ private:
+  std::vector<solve::Assertion> Everything(const View& view);
+  std::vector<TermId> Everyone();
+  TermId Refute(TermId goal);
+  Problem Undefined(size_t action, TermId undefined, TermId robot);
+  Problem Ground(std::vector<solve::Assertion> assertions, std::vector<TermId> participants);
+
+  expr::Arena& arena_;
+  const Model& model_;
+  Options options_;
+  Vocabulary vocabulary_;
+  Executor executor_;
+  Theory theory_;
+  Round round_;
+  std::optional<Round> init_;
+  TermId robot_;
+};
+
+}  // namespace rondo::koord

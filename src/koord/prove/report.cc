@@ -1,0 +1,246 @@
+#include "koord/prove/report.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "koord/prove/witness.h"
+
+namespace rondo::koord {
+
+using diag::Kind;
+using diag::Span;
+
+Span Reporter::SpanOf(const std::string& name) const {
+  for (const AssumeDef* def : model_.assumptions) {
+    if (problems_.theory().NameOf(*def) == name) return def->span;
+  }
+  for (const SummaryDef* def : model_.summaries) {
+    if (Theory::NameOf(*def) == name) return def->span;
+  }
+  for (size_t i = 0; i < model_.invariants.size(); ++i) {
+    if ("invariant " + problems_.theory().InvariantName(i) == name) return model_.invariants[i]->span;
+  }
+  return {};
+}
+
+void Reporter::Contradiction(const std::string& what, const std::vector<std::string>& core) {
+  report_.contradiction = true;
+  std::vector<Span> spans;
+  for (const std::string& name : core) {
+    const Span span = SpanOf(name);
+    if (span.file.valid() && std::find(spans.begin(), spans.end(), span) == spans.end()) spans.push_back(span);
+  }
+  Span primary = spans.empty() ? Span{} : spans[0];
+  if (spans.empty() && !model_.events.empty()) primary = model_.events[0]->span;
+  auto& report = diagnostics_.Report(Kind::kKoordContradiction, primary, "the assumptions contradict each other: " + what);
+  if (!spans.empty()) report.Under(core.size() == 1 ? "this cannot be true" : "cannot be true together");
+  for (size_t i = 1; i < spans.size(); ++i) report.At(spans[i], "with this");
+  report.Help("from a contradiction everything follows: no verdict below counts");
+}
+
+void Reporter::NeverEnabled(size_t action, const std::vector<std::string>& core) {
+  const EventDef& event = *model_.events[action - 1];
+  const Span span = event.pre.valid() ? model_.program->exprs[event.pre].span : event.span;
+  auto& report = diagnostics_.Report(Kind::kKoordNeverEnabled, span, fmt::format("`{}` can never happen", event.name));
+  report.Under("no state that satisfies the invariants makes this true");
+  for (const std::string& name : core) {
+    if (const Span other = SpanOf(name); other.file.valid()) report.At(other, "excluded by this");
+  }
+}
+
+void Reporter::Unrealisable(size_t p) {
+  // Only if a small team shows it with every quantifier in place.
+  for (int64_t n = 1; n <= 2; ++n) {
+    expr::Arena arena;
+    diag::Diagnostics ignored;
+    Problems small(arena, model_, {n, true}, ignored);
+    const Problem problem = small.PromiseNow(p);
+    solve::Query query = problem.query;
+    if (!problem.complete) query.assertions.insert(query.assertions.end(), problem.assertions.begin(), problem.assertions.end());
+    const solve::Budget budget{std::chrono::milliseconds(1000), false};
+    if (!std::holds_alternative<solve::Sat>(options_.solver->Check(query, budget, options_.stop))) continue;
+    const Theory::Promise promise = problems_.promises()[p];
+    diagnostics_.Report(Kind::kKoordUnrealisable, promise.def->span, fmt::format("`{}` promises at once what need not hold yet", promise.name))
+        .Under("its condition can be true while its promise is false")
+        .Note("the promise must hold at every moment after the program transition, the first one included;\na controller "
+              "that starts where it is false has broken it already")
+        .Help("strengthen the condition, or add an invariant that excludes such a state");
+    return;
+  }
+}
+
+size_t Reporter::ActionOf(const std::string& column) const {
+  const std::vector<std::string>& actions = problems_.round().actions();
+  return static_cast<size_t>(std::find(actions.begin(), actions.end(), column) - actions.begin());
+}
+
+std::string Reporter::Scope() const {
+  return options_.robots ? fmt::format("for N = {}", *options_.robots) : "for every N";
+}
+
+void Reporter::Failures() {
+  const bool counts = !report_.contradiction && !report_.interrupted;
+  for (size_t i = 0; i < report_.rows.size(); ++i) {
+    Row& row = report_.rows[i];
+    const bool invariant = i < model_.invariants.size();
+    bool told = false;  // one witness for each invariant
+    for (Cell& cell : row.cells) {
+      if (cell.outcome == Outcome::kProved) continue;
+      if (told || !counts) continue;
+      told = true;
+      if (invariant) {
+        FailedInvariant(i, cell, cell.column == "initially" ? std::nullopt : std::optional(ActionOf(cell.column)));
+      } else {
+        FailedDefinedness(cell, cell.column == "init" ? 0 : ActionOf(cell.column));
+      }
+    }
+    // An obligation that was not looked at more closely is not established.
+    for (Cell& cell : row.cells) {
+      if (cell.outcome == Outcome::kFailed && row.verdict == Verdict::kUnknown) {
+        cell.outcome = Outcome::kUnknown;
+        if (cell.reason.empty()) cell.reason = "a possible counterexample could not be confirmed";
+      }
+    }
+  }
+}
+
+void Reporter::FailedInvariant(size_t i, Cell& cell, std::optional<size_t> action) {
+  Row& row = report_.rows[i];
+  const InvariantDef& def = *model_.invariants[i];
+  const Span required = model_.program->exprs[def.body].span;
+  const solve::Budget budget{std::min(options_.timeout, std::chrono::milliseconds(3000)), false};
+  const auto witness = FindWitness(model_, i, action, options_.robots, *options_.solver, budget, options_.stop);
+  if (!witness) {
+    Undecided(row, cell, required);
+    return;
+  }
+  cell.outcome = Outcome::kFailed;
+  const std::string size = fmt::format("N_sys = {}", witness->robots);
+  if (!action) {
+    row.verdict = Verdict::kRefuted;
+    diagnostics_.Report(Kind::kKoordRefuted, required, fmt::format("`{}` is false in an initial state", row.name))
+        .Under("required here")
+        .Note(fmt::format("an initial state that the declarations and assumptions allow ({}):\n{}", size, witness->table))
+        .Help("give variables initial values, or state what holds at the start: `assume initially: ...`");
+    return;
+  }
+  row.verdict = witness->reachable ? Verdict::kRefuted : Verdict::kNotInductive;
+  const Kind kind = witness->reachable ? Kind::kKoordRefuted : Kind::kKoordNotInductive;
+  const std::string who = *action == 0 ? "the environment" : fmt::format("`{}`", model_.events[*action - 1]->name);
+  const Span where = *action == 0 ? required : model_.events[*action - 1]->span;
+  auto& report = diagnostics_.Report(kind, where, witness->reachable ? fmt::format("{} violates `{}`", who, row.name)
+                                                                     : fmt::format("{} does not preserve `{}`", who, row.name));
+  if (*action == 0) {
+    report.Under("required at every moment");
+  } else {
+    report.At(required, "required here");
+  }
+  report.Note(fmt::format("one round that breaks it, from {} ({}):\n{}",
+                          witness->reachable ? "an initial state" : "a state that satisfies every invariant", size, witness->table));
+  if (!witness->reachable) report.Note("this state may be unreachable: the induction could not exclude it");
+  if (witness->environment) {
+    report.Help("say what the controller guarantees: `assume M when ... always ...`");
+  } else if (!witness->reachable) {
+    report.Help("add an invariant that excludes the state at the start of this round");
+  }
+}
+
+void Reporter::FailedDefinedness(Cell& cell, size_t action) {
+  Row& row = report_.rows.back();
+  // Which operation: ask for each alone, with a team small enough to be sure.
+  const std::vector<DefinednessCheck> checks = problems_.ChecksOf(action);
+  for (int64_t n = options_.robots.value_or(1); n <= options_.robots.value_or(4) && n <= 8; ++n) {
+    expr::Arena arena;
+    diag::Diagnostics ignored;
+    Problems small(arena, model_, {n, true}, ignored);
+    for (size_t c = 0; c < checks.size(); ++c) {
+      for (int64_t r = 0; r < n; ++r) {
+        Problem problem = small.DefinedAt(action, c, r);
+        solve::Query query = problem.query;
+        if (!problem.complete) query.assertions.insert(query.assertions.end(), problem.assertions.begin(), problem.assertions.end());
+        const solve::Budget budget{std::min(options_.timeout, std::chrono::milliseconds(2000)), false};
+        if (!std::holds_alternative<solve::Sat>(options_.solver->Check(query, budget, options_.stop))) continue;
+        row.verdict = Verdict::kNotInductive;
+        cell.outcome = Outcome::kFailed;
+        const char* what = "";
+        switch (checks[c].kind) {
+          case CheckKind::kIndex: what = "this index can be out of range"; break;
+          case CheckKind::kDivision: what = "this divisor can be zero"; break;
+          case CheckKind::kRemove: what = "the item to remove may not be in the list"; break;
+          case CheckKind::kUnrolling: what = "the list can be longer than its stated bound"; break;
+          case CheckKind::kReturn: what = "this function can end without a value"; break;
+        }
+        diagnostics_.Report(Kind::kKoordUndefinedOperation, checks[c].span, what)
+            .Under(fmt::format("for robot {} of {}, in a state that satisfies every invariant", r, n))
+            .Help("guard the operation, or add an invariant that excludes the state");
+        return;
+      }
+    }
+  }
+  Undecided(row, cell, checks.front().span);
+}
+
+void Reporter::Undecided(Row& row, const Cell& cell, Span span) {
+  row.verdict = Verdict::kUnknown;
+  const bool candidate = cell.outcome == Outcome::kFailed;
+  auto& report = diagnostics_.Report(Kind::kKoordUnknown, span, fmt::format("`{}` could not be decided {}", row.name, Scope()));
+  report.Under(fmt::format("obligation `{}`", cell.column));
+  report.Note(candidate ? "there may be a counterexample, but none could be confirmed with 1 to 4 robots"
+                        : fmt::format("{}: {}", options_.solver->name(), cell.reason));
+  report.Help(candidate ? "state more of what the functions and ports guarantee, or try `--robots 3`" : "give it more time: `--timeout 60`");
+}
+
+// The largest set of invariants whose proofs use only members of the set.
+void Reporter::Verdicts() {
+  if (report_.contradiction || report_.interrupted || report_.disagreement) {
+    for (Row& row : report_.rows) {
+      row.verdict = Verdict::kUnknown;
+      row.because = report_.contradiction ? "the assumptions contradict each other" : report_.interrupted ? "interrupted" : "solvers disagree";
+    }
+    return;
+  }
+  std::set<std::string> standing;
+  const auto all_proved = [](const Row& row) {
+    return std::all_of(row.cells.begin(), row.cells.end(), [](const Cell& c) { return c.outcome == Outcome::kProved; });
+  };
+  // What operations mean where they are undefined is open, so a step proof is worth what the row `defined` is worth.
+  const bool has_defined = report_.rows.size() > model_.invariants.size();
+  const std::string defined = "the row `defined`";
+  for (size_t i = 0; i < report_.rows.size(); ++i) {
+    if (all_proved(report_.rows[i])) standing.insert(i < model_.invariants.size() ? "invariant " + report_.rows[i].name : defined);
+  }
+  if (!has_defined) standing.insert(defined);
+  std::map<std::string, std::string> fell;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (size_t i = 0; i < report_.rows.size(); ++i) {
+      const Row& row = report_.rows[i];
+      const std::string name = i < model_.invariants.size() ? "invariant " + row.name : defined;
+      if (!standing.contains(name)) continue;
+      std::string missing = standing.contains(defined) ? "" : defined;
+      for (const Cell& cell : row.cells) {
+        for (const std::string& used : cell.core) {
+          if (used.starts_with("invariant ") && !standing.contains(used)) missing = used;
+        }
+      }
+      if (missing.empty()) continue;
+      standing.erase(name);
+      fell[name] = missing;
+      changed = true;
+    }
+  }
+  for (size_t i = 0; i < report_.rows.size(); ++i) {
+    Row& row = report_.rows[i];
+    const std::string name = i < model_.invariants.size() ? "invariant " + row.name : defined;
+    if (standing.contains(name)) {
+      row.verdict = Verdict::kProved;
+    } else if (fell.contains(name)) {
+      row.verdict = Verdict::kConditional;
+      row.because = fmt::format("its proof uses {}, which is not proved", fell[name]);
+    }
+  }
+}
+
+}  // namespace rondo::koord

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "koord/prove/problem.h"
+#include "koord/prove/prove.h"
+
+namespace rondo::koord {
+
+/// Turns what the solver said into verdicts and diagnostics that a robotics engineer can act on.
+class Reporter {
+ public:
+  Reporter(const diag::SourceSet& sources, const Model& model, const ProveOptions& options, Problems& problems,
+           diag::Diagnostics& diagnostics, Report& report)
+      : sources_(sources), model_(model), options_(options), problems_(problems), diagnostics_(diagnostics), report_(report) {}
+
+  /// The assumptions named in `core` cannot all be true.
+  void Contradiction(const std::string& what, const std::vector<std::string>& core);
+  void NeverEnabled(size_t action, const std::vector<std::string>& core);
+  /// Promise `p` does not hold yet when the environment takes over.
+  void Unrealisable(size_t p);
+  /// Looks for a witness of each obligation that could not be discharged and reports it.
+  void Failures();
+  /// Verdicts of the rows that did not fail: proved, unless a proof rests on what is not proved.
+  void Verdicts();
+
+ private:
+  void FailedInvariant(size_t i, Cell& cell, std::optional<size_t> action);
+  void FailedDefinedness(Cell& cell, size_t action);
+  void Undecided(Row& row, const Cell& cell, diag::Span span);
+  diag::Span SpanOf(const std::string& assumption) const;
+  size_t ActionOf(const std::string& column) const;
+  std::string Scope() const;
+
+  const diag::SourceSet& sources_;
+  const Model& model_;
+  const ProveOptions& options_;
+  Problems& problems_;
+  diag::Diagnostics& diagnostics_;
+  Report& report_;
+};
+
+}  // namespace rondo::koord

@@ -1,0 +1,179 @@
+#include "koord/prove/theory.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "expr/substitute.h"
+#include "lang/expr_printer.h"
+
+namespace rondo::koord {
+
+using solve::Assertion;
+
+Theory::Theory(Vocabulary& vocabulary, Executor& executor)
+    : vocabulary_(vocabulary), executor_(executor), arena_(vocabulary.arena()), model_(vocabulary.model()) {}
+
+TermId Theory::ForEachRobot(const std::function<TermId(TermId)>& body) {
+  if (executor_.expands_robots()) {
+    std::vector<TermId> parts;
+    for (int64_t r = 0; r < *vocabulary_.fixed_robots(); ++r) parts.push_back(body(arena_.IntNumber(r)));
+    return arena_.And(std::move(parts));
+  }
+  const TermId robot = arena_.FreshBound("robot", arena_.Int());
+  return arena_.Forall({robot}, arena_.Implies(vocabulary_.IsRobot(robot), body(robot)));
+}
+
+// A formula that names ports or variables without a robot speaks of each robot.
+TermId Theory::PerRobot(ExprId e, const View& view) {
+  bool used = false;
+  const TermId all = ForEachRobot([&](TermId robot) {
+    const TermId one = executor_.Specification(e, view, robot, nullptr, {});
+    used = used || executor_.used_robot();
+    return one;
+  });
+  return used ? all : executor_.Specification(e, view, {}, nullptr, {});
+}
+
+bool Theory::UsesOld(ExprId id) const {
+  const lang::Expr& e = model_.program->exprs[id];
+  const Ref ref = model_.RefOf(id);
+  if (e.kind == lang::ExprKind::kCall && ref.kind == RefKind::kBuiltin && static_cast<Builtin>(ref.index) == Builtin::kOld) return true;
+  return std::any_of(e.args.begin(), e.args.end(), [&](ExprId arg) { return UsesOld(arg); });
+}
+
+std::string Theory::NameOf(const AssumeDef& def) const {
+  const lang::ExprPool& exprs = model_.program->exprs;
+  switch (def.kind) {
+    case AssumeKind::kInitially: return "initially " + lang::PrintExpr(exprs, def.body);
+    case AssumeKind::kFact: return def.name.empty() ? lang::PrintExpr(exprs, def.body) : def.name;
+    case AssumeKind::kPort: break;
+  }
+  if (!def.name.empty()) return fmt::format("{}.{}", def.module, def.name);
+  // Unnamed ones are told apart by their order.
+  int number = 0;
+  int unnamed = 0;
+  for (const AssumeDef* other : model_.assumptions) {
+    if (other->kind != AssumeKind::kPort || other->module != def.module || !other->name.empty()) continue;
+    ++unnamed;
+    if (other == &def) number = unnamed;
+  }
+  return unnamed == 1 ? def.module : fmt::format("{} ({})", def.module, number);
+}
+
+std::string Theory::InvariantName(size_t i) const {
+  const InvariantDef& def = *model_.invariants[i];
+  return def.name.empty() ? fmt::format("invariant{}", i + 1) : def.name;
+}
+
+TermId Theory::Invariant(size_t i, const View& view) { return PerRobot(model_.invariants[i]->body, view); }
+
+std::vector<Assertion> Theory::Invariants(const View& view) {
+  std::vector<Assertion> result;
+  for (size_t i = 0; i < invariants(); ++i) result.push_back({Invariant(i, view), "invariant " + InvariantName(i)});
+  return result;
+}
+
+TermId Theory::Summary(const SummaryDef& def) {
+  size_t index = 0;
+  for (size_t i = 0; i < model_.functions.size(); ++i) {
+    const Function& f = model_.functions[i];
+    if (f.name == def.function || (f.port >= 0 && f.name.ends_with("." + def.function))) index = i;
+  }
+  const Function& f = model_.functions[index];
+  const std::vector<uint32_t>& bound = model_.bound_by.at(&def);
+  std::map<uint32_t, TermId> bindings;
+  std::vector<TermId> variables;
+  if (f.port >= 0) variables.push_back(arena_.FreshBound("robot", arena_.Int()));
+  for (size_t i = 0; i < f.parameters.size(); ++i) {
+    variables.push_back(arena_.FreshBound(def.parameters[i], vocabulary_.SortOf(f.parameters[i])));
+    bindings[bound[i]] = variables.back();
+  }
+  const View parameters = vocabulary_.MakeView("");
+  bindings[bound.back()] = arena_.Apply(vocabulary_.Function(index, ""), variables);
+  return arena_.Forall(variables, executor_.Specification(def.body, parameters, {}, nullptr, bindings));
+}
+
+std::vector<Assertion> Theory::Background() {
+  std::vector<Assertion> result;
+  const View parameters = vocabulary_.MakeView("");
+  for (const AssumeDef* def : model_.assumptions) {
+    if (def->kind != AssumeKind::kFact) continue;
+    result.push_back({executor_.Specification(def->body, parameters, {}, nullptr, {}), NameOf(*def)});
+  }
+  for (const SummaryDef* def : model_.summaries) result.push_back({Summary(*def), NameOf(*def)});
+  for (size_t v = 0; v < model_.variables.size(); ++v) {
+    const Variable& variable = model_.variables[v];
+    if (variable.kind != VariableKind::kParam || !variable.initial.valid()) continue;
+    const TermId value = executor_.Value(variable.initial, variable.type, parameters);
+    result.push_back({arena_.Eq(parameters.value[v], value), ""});
+  }
+  for (const TermId axiom : vocabulary_.Axioms()) result.push_back({axiom, ""});
+  return result;
+}
+
+std::vector<Assertion> Theory::DeclaredValues(const View& view) {
+  std::vector<Assertion> result;
+  const View parameters = vocabulary_.MakeView("");
+  for (size_t v = 0; v < model_.variables.size(); ++v) {
+    const Variable& variable = model_.variables[v];
+    if (variable.kind == VariableKind::kParam || !variable.initial.valid()) continue;
+    const auto value = [&](TermId) { return executor_.Value(variable.initial, variable.type, parameters); };
+    const TermId fact = variable.PerRobot()
+                            ? ForEachRobot([&](TermId r) { return arena_.Eq(arena_.Select(view.value[v], r), value(r)); })
+                            : arena_.Eq(view.value[v], value({}));
+    result.push_back({fact, ""});
+  }
+  result.push_back({ForEachRobot([&](TermId r) { return arena_.Not(arena_.Select(view.stopped, r)); }), ""});
+  return result;
+}
+
+std::vector<Assertion> Theory::Initially(const View& view) {
+  std::vector<Assertion> result;
+  for (const AssumeDef* def : model_.assumptions) {
+    if (def->kind == AssumeKind::kInitially) result.push_back({PerRobot(def->body, view), NameOf(*def)});
+  }
+  return result;
+}
+
+std::vector<Assertion> Theory::PortFacts(const View& view) {
+  std::vector<Assertion> result;
+  for (const AssumeDef* def : model_.assumptions) {
+    if (def->kind == AssumeKind::kPort && !def->when.valid() && !UsesOld(def->body)) {
+      result.push_back({PerRobot(def->body, view), NameOf(*def)});
+    }
+  }
+  return result;
+}
+
+std::vector<Theory::Promise> Theory::Promises(const View& settled, const View& end, TermId robot) {
+  std::vector<Promise> result;
+  for (const AssumeDef* def : model_.assumptions) {
+    if (def->kind != AssumeKind::kPort || (!def->when.valid() && !UsesOld(def->body))) continue;
+    const TermId condition = def->when.valid() ? executor_.Specification(def->when, settled, robot, nullptr, {}) : arena_.True();
+    const TermId promise = executor_.Specification(def->body, end, robot, &settled, {});
+    result.push_back({def, NameOf(*def), condition, promise});
+  }
+  return result;
+}
+
+std::vector<Assertion> Theory::PortPromises(Round& round, TermId robot) {
+  std::vector<Assertion> result;
+  for (const Promise& p : Promises(round.settled(), round.end(), robot)) {
+    result.push_back({arena_.Or({arena_.Not(round.moved()), arena_.Not(p.condition), p.promise}), p.name});
+  }
+  return result;
+}
+
+std::vector<std::string> Theory::Unconstrained() const {
+  std::vector<std::string> result;
+  for (const Function& f : model_.functions) {
+    if (!f.external() || !f.declared || f.port >= 0) continue;
+    const bool summarised = std::any_of(model_.summaries.begin(), model_.summaries.end(),
+                                        [&](const SummaryDef* s) { return s->function == f.name; });
+    if (!summarised) result.push_back(f.name);
+  }
+  return result;
+}
+
+}  // namespace rondo::koord

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "koord/prove/problem.h"
+
+namespace rondo::koord {
+
+/// A round that breaks an invariant, with a small number of robots.
+struct Witness {
+  bool reachable = false;  ///< it starts in an initial state
+  bool environment = false;  ///< the environment moved in it
+  int64_t robots = 0;
+  std::string table;  ///< who did, read and wrote what; several lines
+};
+
+/// Looks for a witness that invariant `i` fails in a round whose first action is `action`, or, with no action, in an
+/// initial state. Tries teams of 1 to 4 robots, or the fixed size if that is at most 8. What it returns satisfies all
+/// assumptions and invariants: it is checked with every quantifier in place.
+std::optional<Witness> FindWitness(const Model& model, size_t invariant, std::optional<size_t> action,
+                                   std::optional<int64_t> robots, const solve::Solver& solver,
+                                   const solve::Budget& budget, const base::StopToken& stop);
+
+}  // namespace rondo::koord

@@ -1,0 +1,255 @@
+#include <algorithm>
+#include <array>
+
+#include "koord/syntax/parser_impl.h"
+#include "lang/lexer.h"
+
+namespace rondo::koord {
+
+using diag::Kind;
+using diag::Span;
+using lang::TokenKind;
+
+bool IsReservedWord(std::string_view word) {
+  static constexpr std::array<std::string_view, 31> kWords = {
+      "using", "def",   "actuators", "sensors",  "allread", "allwrite", "local",  "init",  "pre", "eff", "if",
+      "elif",  "else",  "for",       "in",       "atomic",  "return",   "break",  "stop",  "and", "or",  "not",
+      "pid",   "forall", "exists",   "implies",  "continue", "true",    "false",  "True",  "False"};
+  return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
+}
+
+void Parse(const diag::SourceSet& sources, diag::FileId file, Program& program, diag::Diagnostics& diagnostics) {
+  const lang::TokenStream stream = lang::Lex(sources, file, {}, diagnostics);
+  program.comments.insert(program.comments.end(), stream.comments.begin(), stream.comments.end());
+  Parser(stream, program, diagnostics).ParseProgram();
+}
+
+void Parser::ParseProgram() {
+  while (!AtKind(TokenKind::kEnd)) {
+    ClearFailure();
+    const size_t before = at_;
+    if (AtKind(TokenKind::kNewline) || AtKind(TokenKind::kDedent)) {
+      Take();
+      continue;
+    }
+    if (AtKind(TokenKind::kIndent)) {
+      diagnostics_.Report(Kind::kSyntaxIndentation, Peek().span, "this line is indented without a reason")
+          .Under("nothing above it opens a block");
+      SkipBlock();
+      continue;
+    }
+    if (Accept(";")) continue;
+    ParseItem();
+    if (at_ == before) SkipLine();
+  }
+}
+
+void Parser::AddItem(Item item, Span start) {
+  program_.items.push_back(std::move(item));
+  program_.item_spans.push_back(start.To(PreviousSpan()));
+}
+
+void Parser::SkipBlock() {
+  if (!AtKind(TokenKind::kIndent)) return;
+  int depth = 0;
+  do {
+    if (AtKind(TokenKind::kIndent)) ++depth;
+    if (AtKind(TokenKind::kDedent)) --depth;
+    if (AtKind(TokenKind::kEnd)) return;
+    Take();
+  } while (depth > 0);
+}
+
+void Parser::SkipLine() {
+  while (!AtKind(TokenKind::kNewline) && !AtKind(TokenKind::kEnd) && !AtKind(TokenKind::kDedent) &&
+         !AtKind(TokenKind::kIndent)) {
+    Take();
+  }
+  if (AtKind(TokenKind::kNewline)) Take();
+  SkipBlock();
+  ClearFailure();
+}
+
+bool Parser::EndLine(std::string_view after) {
+  if (!failed() && (AtKind(TokenKind::kNewline) || AtKind(TokenKind::kEnd))) {
+    if (AtKind(TokenKind::kNewline)) Take();
+    if (AtKind(TokenKind::kIndent)) {
+      diagnostics_.Report(Kind::kSyntaxIndentation, Peek().span, "this line is indented without a reason")
+          .Under("the line above opens no block");
+      SkipBlock();
+    }
+    return true;
+  }
+  Unexpected("the end of the line").Under("after " + std::string(after));
+  SkipLine();
+  return false;
+}
+
+void Parser::ParseItem() {
+  const Span start = Peek().span;
+  if (At("def")) return ParseDef();
+  if (At("using")) return ParseModule();
+  if (At("allread")) return ParseSection(SectionKind::kAllread);
+  if (At("allwrite")) return ParseSection(SectionKind::kAllwrite);
+  if (At("local")) return ParseSection(SectionKind::kLocal);
+  if (At("init")) return ParseInit();
+  if (At("agent") && Peek(1).kind == TokenKind::kName) {
+    Take();
+    const Span span = Peek().span;
+    std::string name = ExpectName("the name of the program");
+    Accept(":");
+    if (EndLine("the name of the program")) AddItem(AgentHeader{std::move(name), span}, start);
+    return;
+  }
+  if (ParseSpecItem()) return;
+  if (AtKind(TokenKind::kName) && !IsReserved(Peek().text)) return ParseEvent();
+  Unexpected("a section, an event or a specification");
+  SkipLine();
+}
+
+// def [fun] f(params) [-> type]: body  |  def [adt|type] Name: fields  |  def Name {a, b}
+void Parser::ParseDef() {
+  const Span start = Take().span;
+  bool adt = false;
+  if ((At("fun") || At("adt") || At("type")) && Peek(1).kind == TokenKind::kName) adt = Take().text != "fun";
+  const Span span = Peek().span;
+  std::string name = ExpectName("the name of a function or type");
+  if (At("(") && !adt) return ParseFunction(std::move(name), span);
+  if (At("{")) return ParseEnum(std::move(name), span);
+  AdtDef def{std::move(name), span, {}};
+  if (!Expect(":", "the name of a type")) return SkipLine();
+  ParseDeclGroup(def.fields);
+  AddItem(std::move(def), start);
+}
+
+void Parser::ParseFunction(std::string name, Span span) {
+  const Span start = span;
+  FunctionDef def{std::move(name), span, {}, {}, {}, true};
+  Take();
+  while (!At(")") && !failed()) {
+    Decl parameter;
+    parameter.type = ParseType();
+    parameter.span = Peek().span;
+    parameter.name = ExpectName("the name of a parameter");
+    ParseDimensions(parameter.dimensions);
+    def.parameters.push_back(std::move(parameter));
+    Accept(",");
+  }
+  Expect(")", "the parameters");
+  if (Accept("->")) def.result = ParseType();
+  if (!failed() && (AtKind(TokenKind::kNewline) || AtKind(TokenKind::kEnd)) && Peek(1).kind != TokenKind::kIndent) {
+    // Only a signature: an external function.
+    def.has_body = false;
+    EndLine("the signature");
+  } else {
+    def.body = ParseSuite("the signature of a function");
+  }
+  AddItem(std::move(def), start);
+}
+
+void Parser::ParseEnum(std::string name, Span span) {
+  EnumDef def{std::move(name), span, {}, {}};
+  Take();
+  do {
+    def.member_spans.push_back(Peek().span);
+    def.members.push_back(ExpectName("a member"));
+  } while (!failed() && Accept(","));
+  Expect("}", "the members");
+  if (EndLine("the members")) AddItem(std::move(def), span);
+}
+
+void Parser::ParseModule() {
+  const Span start = Take().span;
+  if (At("module") && Peek(1).kind == TokenKind::kName) Take();
+  const Span span = Peek().span;
+  ModuleDef module{ExpectName("the name of a module"), span, {}};
+  Accept(":");
+  bool block = false;
+  if (!failed() && AtKind(TokenKind::kNewline)) {
+    Take();
+    block = AtKind(TokenKind::kIndent);
+    if (block) Take();
+  }
+  while (!failed() && ParsePortGroup(module)) {
+    if (!block && !At("sensors") && !At("actuators") && !At("sensor") && !At("actuator")) break;
+  }
+  if (failed()) SkipLine();
+  if (block) {
+    while (!AtKind(TokenKind::kDedent) && !AtKind(TokenKind::kEnd)) SkipLine();
+    if (AtKind(TokenKind::kDedent)) Take();
+  }
+  AddItem(std::move(module), start);
+}
+
+bool Parser::ParsePortGroup(ModuleDef& module) {
+  const Span span = Peek().span;
+  PortGroup group{At("sensors") || At("sensor"), span, {}};
+  if (!group.sensors && !At("actuators") && !At("actuator")) {
+    if (!AtKind(TokenKind::kDedent) && !AtKind(TokenKind::kEnd)) Unexpected("`sensors` or `actuators`");
+    return false;
+  }
+  Take();
+  Accept(":");
+  ParseDeclGroup(group.ports);
+  module.groups.push_back(std::move(group));
+  return true;
+}
+
+void Parser::ParseSection(SectionKind kind) {
+  const Span start = Take().span;
+  Accept(":");
+  Section section{kind, start, {}};
+  ParseDeclGroup(section.decls);
+  AddItem(std::move(section), start);
+}
+
+void Parser::ParseInit() {
+  const Span start = Take().span;
+  InitDef init{start, ParseSuite("`init`")};
+  AddItem(std::move(init), start);
+}
+
+void Parser::ParseEvent() {
+  const Span start = Peek().span;
+  EventDef event;
+  event.span = start;
+  event.name = std::string(Take().text);
+  if (Accept("(") && !Expect(")", "the name of an event")) return SkipLine();
+  if (!Accept(":")) {
+    // Recover inside when this can only have been an event.
+    Unexpected("`:`").Under("after the name of an event");
+    return SkipLine();
+  }
+  if (AtKind(TokenKind::kNewline)) Take();
+  const bool block = AtKind(TokenKind::kIndent);
+  if (block) Take();
+  const bool good = ParseEventBody(event);
+  if (block) {
+    if (good && !AtKind(TokenKind::kDedent) && !AtKind(TokenKind::kEnd)) {
+      Unexpected("the end of the event");
+    }
+    while (!AtKind(TokenKind::kDedent) && !AtKind(TokenKind::kEnd)) SkipLine();
+    if (AtKind(TokenKind::kDedent)) Take();
+  }
+  AddItem(std::move(event), start);
+}
+
+// [pre [urgent] [:] expr] eff suite
+bool Parser::ParseEventBody(EventDef& event) {
+  bool good = true;
+  if (Accept("pre")) {
+    event.urgent = Accept("urgent");
+    Accept(":");
+    event.pre = ParseExpr();
+    good = EndLine("a precondition");
+  }
+  if (!Accept("eff")) {
+    Unexpected(event.pre.valid() ? "`eff`" : "`pre` or `eff`").Under("in an event");
+    SkipLine();
+    return false;
+  }
+  event.body = ParseSuite("`eff`");
+  return good;
+}
+
+}  // namespace rondo::koord

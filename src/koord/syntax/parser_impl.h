@@ -1,0 +1,69 @@
+#pragma once
+
+#include "koord/syntax/ast.h"
+#include "koord/syntax/parser.h"
+#include "lang/expr_parser.h"
+
+namespace rondo::koord {
+
+/// The recursive-descent parser. Its grammar is split over files by what it reads: items, declarations, statements,
+/// specifications.
+class Parser : public lang::ExprParser {
+ public:
+  Parser(const lang::TokenStream& stream, Program& program, diag::Diagnostics& diagnostics)
+      : ExprParser(stream, program.exprs, diagnostics), program_(program) {}
+
+  void ParseProgram();
+
+ protected:
+  bool IsReserved(std::string_view word) const override { return IsReservedWord(word); }
+
+ private:
+  // items.cc
+  void ParseItem();
+  void ParseDef();
+  void ParseFunction(std::string name, diag::Span span);
+  void ParseEnum(std::string name, diag::Span span);
+  void ParseModule();
+  bool ParsePortGroup(ModuleDef& module);
+  void ParseSection(SectionKind kind);
+  void ParseInit();
+  void ParseEvent();
+  bool ParseEventBody(EventDef& event);
+
+  // declarations.cc
+  void ParseDeclGroup(std::vector<Decl>& decls);
+  bool ParseDecl(std::vector<Decl>& decls);
+  void ParseDimensions(std::vector<ExprId>& dimensions);
+
+  // statements.cc
+  std::vector<Stmt> ParseSuite(std::string_view after);
+  std::vector<Stmt> ParseBlock();
+  void ParseStatement(std::vector<Stmt>& out);
+  bool ParseSimple(std::vector<Stmt>& out);
+  void ParseIf(std::vector<Stmt>& out, bool elif);
+  void ParseFor(std::vector<Stmt>& out);
+  bool AtCompound() const;
+
+  // specifications.cc
+  bool ParseSpecItem();
+  void ParseParam(diag::Span start);
+  void ParseAssume(diag::Span start);
+  void ParseSummary(diag::Span start);
+  void ParseInvariant(diag::Span start);
+  bool AcceptContinuation(std::string_view word);
+  ExprId ParseSpecBody();
+  void EndSpecItem();
+
+  // Recovery: skips to behind the end of the line, and over the block that belongs to it.
+  void SkipLine();
+  void SkipBlock();
+  bool EndLine(std::string_view after);
+  void AddItem(Item item, diag::Span start);
+
+  Program& program_;
+  int nesting_ = 0;
+  int continuation_ = 0;  // blocks opened by continuation lines of a specification item
+};
+
+}  // namespace rondo::koord

@@ -1,0 +1,156 @@
+#include <fmt/format.h>
+
+#include "koord/syntax/parser_impl.h"
+
+namespace rondo::koord {
+
+using diag::Span;
+using lang::TokenKind;
+
+// `param`, `assume`, `summary` and `invariant` are words only where such an item can start.
+bool Parser::ParseSpecItem() {
+  if (!AtKind(TokenKind::kName)) return false;
+  const auto& next = Peek(1);
+  const bool name_follows = next.kind == TokenKind::kName;
+  const Span start = Peek().span;
+  if (At("param") && name_follows) {
+    ParseParam(start);
+  } else if (At("assume") && (next.kind != TokenKind::kPunctuation || next.text == ":" || next.text == "(" || next.text == "-")) {
+    ParseAssume(start);
+  } else if (At("summary") && name_follows) {
+    ParseSummary(start);
+  } else if ((At("invariant") || At("SafetyProp")) &&
+             (name_follows || next.text == ":" || next.text == "(" || next.text == "{")) {
+    ParseInvariant(start);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+// A specification may go on in deeper lines. Takes the line end and the deeper line if `word` (or anything, if empty)
+// stands there.
+bool Parser::AcceptContinuation(std::string_view word) {
+  if (!AtKind(TokenKind::kNewline)) return false;
+  const bool deeper = Peek(1).kind == TokenKind::kIndent && (word.empty() || Peek(2).text == word);
+  const bool same = continuation_ > 0 && !word.empty() && Peek(1).text == word;
+  if (!deeper && !same) return false;
+  Take();
+  if (deeper) {
+    Take();
+    ++continuation_;
+  }
+  return true;
+}
+
+ExprId Parser::ParseSpecBody() {
+  AcceptContinuation("");
+  return ParseExpr();
+}
+
+void Parser::EndSpecItem() {
+  if (failed()) {
+    SkipLine();
+  } else if (At(";")) {
+    Take();
+    if (AtKind(TokenKind::kNewline)) Take();
+  } else {
+    EndLine("a specification");
+  }
+  for (; continuation_ > 0; --continuation_) {
+    while (!AtKind(TokenKind::kDedent) && !AtKind(TokenKind::kEnd)) SkipLine();
+    if (AtKind(TokenKind::kDedent)) Take();
+  }
+}
+
+// param type name [= value] {; [param] type name [= value]}
+void Parser::ParseParam(Span start) {
+  Take();
+  std::vector<Decl> decls;
+  if (!ParseDecl(decls)) return SkipLine();
+  for (Decl& decl : decls) AddItem(ParamDef{decl, decl.span}, start);
+  EndSpecItem();
+}
+
+// assume initially[:] e  |  assume M[.name] [when e] always e  |  assume [name:] e
+void Parser::ParseAssume(Span start) {
+  Take();
+  AssumeDef def{AssumeKind::kFact, {}, {}, start, {}, {}};
+  if (At("initially")) {
+    Take();
+    Accept(":");
+    def.kind = AssumeKind::kInitially;
+    def.body = ParseSpecBody();
+  } else if (AtKind(TokenKind::kName) &&
+             (Peek(1).text == "when" || Peek(1).text == "always" || Peek(1).kind == TokenKind::kNewline ||
+              (Peek(1).text == "." && (Peek(3).text == "when" || Peek(3).text == "always" ||
+                                       Peek(3).kind == TokenKind::kNewline)))) {
+    def.kind = AssumeKind::kPort;
+    def.span = Peek().span;
+    def.module = ExpectName("the name of a module");
+    if (Accept(".")) {
+      def.span = def.span.To(Peek().span);
+      def.name = ExpectName("the name of the assumption");
+    }
+    AcceptContinuation("when");
+    if (Accept("when")) def.when = ParseSpecBody();
+    AcceptContinuation("always");
+    if (!Expect("always", "the condition of an assumption")) return EndSpecItem();
+    def.body = ParseSpecBody();
+  } else {
+    if (AtKind(TokenKind::kName) && Peek(1).text == ":") {
+      def.span = Peek().span;
+      def.name = ExpectName("the name of the assumption");
+      Take();
+    } else {
+      Accept(":");
+    }
+    def.body = ParseSpecBody();
+  }
+  AddItem(std::move(def), start);
+  EndSpecItem();
+}
+
+// summary f(a, b) -> y: e
+void Parser::ParseSummary(Span start) {
+  Take();
+  SummaryDef def;
+  def.span = Peek().span;
+  def.function = ExpectName("the name of a function");
+  if (Accept(".")) def.function += "." + ExpectName("the name of a port");
+  Expect("(", "the name of a function");
+  while (!failed() && !At(")")) {
+    def.parameter_spans.push_back(Peek().span);
+    def.parameters.push_back(ExpectName("the name of a parameter"));
+    if (!Accept(",")) break;
+  }
+  Expect(")", "the parameters");
+  Expect("->", "the parameters");
+  def.result = ExpectName("the name of the result");
+  Expect(":", "the name of the result");
+  def.body = ParseSpecBody();
+  if (!failed()) AddItem(std::move(def), start);
+  EndSpecItem();
+}
+
+// invariant [name]: e  |  SafetyProp { e }
+void Parser::ParseInvariant(Span start) {
+  Take();
+  InvariantDef def;
+  def.span = start;
+  if (AtKind(TokenKind::kName) && Peek(1).text == ":") {
+    def.span = Peek().span;
+    def.name = ExpectName("the name of the invariant");
+  }
+  if (Accept("{")) {
+    def.body = ParseExpr();
+    Expect("}", "the property");
+  } else {
+    Expect(":", "`invariant`");
+    def.body = ParseSpecBody();
+  }
+  AddItem(std::move(def), start);
+  EndSpecItem();
+}
+
+}  // namespace rondo::koord

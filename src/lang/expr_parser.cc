@@ -1,0 +1,349 @@
+#include "lang/expr_parser.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+namespace rondo::lang {
+
+using diag::Kind;
+using diag::Span;
+
+// Counts how deep the recursion is; reports once where it is too deep.
+class ExprParser::Depth {
+ public:
+  explicit Depth(ExprParser& parser) : parser_(parser) { ++parser_.depth_; }
+  Depth(const Depth&) = delete;
+  Depth& operator=(const Depth&) = delete;
+  ~Depth() { --parser_.depth_; }
+  bool TooDeep() {
+    if (parser_.depth_ <= kDeepest) return false;
+    if (!parser_.failed_) {
+      parser_.diagnostics_.Report(Kind::kSyntaxNesting, parser_.Peek().span, "this expression is nested too deeply")
+          .Under(fmt::format("more than {} levels", kDeepest));
+      parser_.failed_ = true;
+    }
+    return true;
+  }
+
+ private:
+  ExprParser& parser_;
+};
+
+const Token& ExprParser::Peek(size_t ahead) const {
+  return stream_.tokens[std::min(at_ + ahead, stream_.tokens.size() - 1)];
+}
+const Token& ExprParser::Take() {
+  const Token& token = Peek();
+  if (at_ + 1 < stream_.tokens.size()) ++at_;
+  return token;
+}
+bool ExprParser::At(std::string_view text) const {
+  const Token& token = Peek();
+  return (token.kind == TokenKind::kName || token.kind == TokenKind::kPunctuation) && token.text == text;
+}
+bool ExprParser::Accept(std::string_view text) {
+  if (!At(text)) return false;
+  Take();
+  return true;
+}
+Span ExprParser::PreviousSpan() const { return stream_.tokens[at_ == 0 ? 0 : at_ - 1].span; }
+
+diag::Diagnostic& ExprParser::Unexpected(std::string_view expected) {
+  static thread_local diag::Diagnostic ignored{};
+  if (failed_) return ignored = {};
+  failed_ = true;
+  Span span = Peek().span;
+  // The end of a line is shown right behind what stands before it.
+  if (span.begin == span.end && at_ > 0) span = {span.file, PreviousSpan().end, PreviousSpan().end};
+  return diagnostics_.Report(Kind::kSyntaxUnexpected, span, fmt::format("{} where {} should be", Describe(Peek()), expected));
+}
+
+bool ExprParser::Expect(std::string_view text, std::string_view after) {
+  if (Accept(text)) return true;
+  Unexpected(fmt::format("`{}`", text)).Under(fmt::format("after {}", after));
+  return false;
+}
+
+std::string ExprParser::ExpectName(std::string_view what) {
+  if (AtKind(TokenKind::kName) && !IsReserved(Peek().text)) return std::string(Take().text);
+  if (AtKind(TokenKind::kName) && !failed_) {
+    failed_ = true;
+    diagnostics_.Report(Kind::kKoordReservedName, Peek().span, fmt::format("`{}` is a word of the language", Peek().text))
+        .Under(fmt::format("cannot be {}", what));
+    return {};
+  }
+  Unexpected(what);
+  return {};
+}
+
+ExprId ExprParser::Binary(std::string text, ExprId a, ExprId b) {
+  return pool_.Add({ExprKind::kBinary, pool_[a].span.To(pool_[b].span), std::move(text), {a, b}, {}});
+}
+
+ExprId ExprParser::ParseExpr() {
+  Depth depth(*this);
+  if (depth.TooDeep()) return Fail(Peek().span);
+  return ParseImplies();
+}
+
+ExprId ExprParser::ParseImplies() {
+  const ExprId left = ParseOr();
+  if (!At("implies") && !At("=>")) return left;
+  Take();
+  Depth depth(*this);
+  if (depth.TooDeep()) return Fail(Peek().span);
+  return Binary("implies", left, ParseImplies());
+}
+
+ExprId ExprParser::ParseQuantifier() {
+  const Token& word = Take();
+  Expr quantifier{ExprKind::kQuantifier, word.span, std::string(word.text), {}, {}};
+  do {
+    Binder binder;
+    if (!ParseBinder(binder)) return Fail(word.span);
+    quantifier.binders.push_back(std::move(binder));
+  } while (Accept(","));
+  if (!Accept(".") && !Expect(":", "the variables of a quantifier")) return Fail(word.span);
+  const ExprId body = ParseExpr();
+  quantifier.args = {body};
+  quantifier.span = quantifier.span.To(pool_[body].span);
+  return pool_.Add(std::move(quantifier));
+}
+
+bool ExprParser::ParseBinder(Binder& binder) {
+  do {
+    const Span span = Peek().span;
+    std::string name = ExpectName("the name of a variable");
+    if (name.empty()) return false;
+    binder.names.push_back(std::move(name));
+    binder.spans.push_back(span);
+  } while (Accept(","));
+  if (Accept(":")) {
+    binder.type = ParseType();
+    return !failed_;
+  }
+  if (!Expect("in", "the variables of a quantifier")) return false;
+  static constexpr std::array<std::string_view, 8> kTypeWords = {"List", "Queue", "Map", "Set", "list", "queue", "map", "set"};
+  if (AtKind(TokenKind::kName) && std::find(kTypeWords.begin(), kTypeWords.end(), Peek().text) != kTypeWords.end() &&
+      (Peek(1).text == "<" || Peek(1).text == "(")) {
+    binder.type = ParseType();
+  } else {
+    binder.domain = ParseSum();
+  }
+  return !failed_;
+}
+
+ExprId ExprParser::ParseOr() {
+  ExprId left = ParseAnd();
+  while (At("or") || At("||")) {
+    Take();
+    left = Binary("or", left, ParseAnd());
+  }
+  return left;
+}
+
+ExprId ExprParser::ParseAnd() {
+  ExprId left = ParseNot();
+  while (At("and") || At("&&")) {
+    Take();
+    left = Binary("and", left, ParseNot());
+  }
+  return left;
+}
+
+ExprId ExprParser::ParseNot() {
+  if (At("forall") || At("exists")) {
+    Depth depth(*this);
+    if (depth.TooDeep()) return Fail(Peek().span);
+    return ParseQuantifier();
+  }
+  if (!At("not") && !At("!")) return ParseComparison();
+  Depth depth(*this);
+  if (depth.TooDeep()) return Fail(Peek().span);
+  const Span span = Take().span;
+  const ExprId operand = ParseNot();
+  return pool_.Add({ExprKind::kUnary, span.To(pool_[operand].span), "not", {operand}, {}});
+}
+
+ExprId ExprParser::ParseComparison() {
+  const ExprId left = ParseSum();
+  const auto operation = [&]() -> std::string {
+    static constexpr std::array<std::string_view, 6> kSigns = {"==", "!=", "<", "<=", ">", ">="};
+    for (const std::string_view sign : kSigns) {
+      if (At(sign)) return std::string(sign);
+    }
+    if (At("=")) return "==";  // the papers' programs write it so
+    if (At("in")) return "in";
+    if (At("not") && Peek(1).text == "in") return "not in";
+    return {};
+  };
+  std::string text = operation();
+  if (text.empty()) return left;
+  if (text == "not in") Take();
+  Take();
+  const ExprId right = ParseSum();
+  const ExprId result = Binary(std::move(text), left, right);
+  if (!operation().empty() && !failed_) {
+    failed_ = true;
+    diagnostics_.Report(Kind::kSyntaxUnexpected, Peek().span, "comparisons do not chain")
+        .At(pool_[result].span, "this is true or false")
+        .Help("write `a < b and b < c`");
+    while (!operation().empty()) {
+      Take();
+      ParseSum();
+    }
+  }
+  return result;
+}
+
+ExprId ExprParser::ParseSum() {
+  ExprId left = ParseProduct();
+  while (At("+") || At("-")) {
+    std::string text(Take().text);
+    left = Binary(std::move(text), left, ParseProduct());
+  }
+  return left;
+}
+
+ExprId ExprParser::ParseProduct() {
+  ExprId left = ParseUnary();
+  while (At("*") || At("/") || At("%")) {
+    std::string text(Take().text);
+    left = Binary(std::move(text), left, ParseUnary());
+  }
+  return left;
+}
+
+ExprId ExprParser::ParseUnary() {
+  if (!At("-")) return ParsePostfix();
+  Depth depth(*this);
+  if (depth.TooDeep()) return Fail(Peek().span);
+  const Span span = Take().span;
+  const ExprId operand = ParseUnary();
+  return pool_.Add({ExprKind::kUnary, span.To(pool_[operand].span), "-", {operand}, {}});
+}
+
+ExprId ExprParser::ParsePostfix() {
+  ExprId base = ParsePrimary();
+  while (true) {
+    if (At(".") && Peek(1).kind == TokenKind::kName) {
+      Take();
+      const Token& member = Take();
+      base = pool_.Add({ExprKind::kField, pool_[base].span.To(member.span), std::string(member.text), {base}, {}});
+    } else if (At("[")) {
+      Take();
+      const ExprId index = ParseExpr();
+      if (!Expect("]", "an index")) return Fail(pool_[base].span);
+      base = pool_.Add({ExprKind::kIndex, pool_[base].span.To(PreviousSpan()), {}, {base, index}, {}});
+    } else if (At("(")) {
+      Take();
+      std::vector<ExprId> args = ParseItems(")");
+      args.insert(args.begin(), base);
+      base = pool_.Add({ExprKind::kCall, pool_[base].span.To(PreviousSpan()), {}, std::move(args), {}});
+    } else {
+      return base;
+    }
+  }
+}
+
+std::vector<ExprId> ExprParser::ParseItems(std::string_view close) {
+  std::vector<ExprId> items;
+  while (!At(close) && !failed_) {
+    items.push_back(ParseExpr());
+    if (!Accept(",")) break;
+  }
+  Expect(close, "this list");
+  return items;
+}
+
+ExprId ExprParser::ParsePrimary() {
+  const Token token = Peek();
+  switch (token.kind) {
+    case TokenKind::kInt:
+    case TokenKind::kFloat: {
+      Take();
+      const ExprKind kind = token.kind == TokenKind::kInt ? ExprKind::kInt : ExprKind::kFloat;
+      return pool_.Add({kind, token.span, std::string(token.text), {}, {}});
+    }
+    case TokenKind::kString: Take(); return pool_.Add({ExprKind::kString, token.span, std::string(token.text), {}, {}});
+    case TokenKind::kName: {
+      if (token.text == "true" || token.text == "True") {
+        Take();
+        return pool_.Add({ExprKind::kBool, token.span, "true", {}, {}});
+      }
+      if (token.text == "false" || token.text == "False") {
+        Take();
+        return pool_.Add({ExprKind::kBool, token.span, "false", {}, {}});
+      }
+      if (token.text == "pid") {
+        Take();
+        return pool_.Add({ExprKind::kPid, token.span, {}, {}, {}});
+      }
+      if (IsReserved(token.text)) break;
+      Take();
+      return pool_.Add({ExprKind::kName, token.span, std::string(token.text), {}, {}});
+    }
+    case TokenKind::kPunctuation: {
+      if (token.text == "(") {
+        Take();
+        std::vector<ExprId> items = ParseItems(")");
+        const Span span = token.span.To(PreviousSpan());
+        if (items.size() == 1) return items[0];
+        if (items.empty()) {
+          if (!failed_) {
+            failed_ = true;
+            diagnostics_.Report(Kind::kSyntaxUnexpected, span, "nothing between the brackets");
+          }
+          return Fail(span);
+        }
+        return pool_.Add({ExprKind::kTuple, span, {}, std::move(items), {}});
+      }
+      if (token.text == "[") {
+        Take();
+        std::vector<ExprId> items = ParseItems("]");
+        return pool_.Add({ExprKind::kList, token.span.To(PreviousSpan()), {}, std::move(items), {}});
+      }
+      break;
+    }
+    case TokenKind::kEnd:
+    case TokenKind::kNewline:
+    case TokenKind::kIndent:
+    case TokenKind::kDedent: break;
+  }
+  Unexpected("a value");
+  return Fail(token.span);
+}
+
+TypeSyntax ExprParser::ParseType() {
+  TypeSyntax type;
+  type.span = Peek().span;
+  type.name = ExpectName("a type");
+  if (type.name.empty()) return type;
+  Depth depth(*this);
+  if (depth.TooDeep()) return type;
+  const bool angle = At("<");
+  if (angle || At("(")) {
+    Take();
+    do {
+      type.arguments.push_back(ParseType());
+    } while (!failed_ && Accept(","));
+    Expect(angle ? ">" : ")", "the arguments of a type");
+    type.span = type.span.To(PreviousSpan());
+  }
+  while (At("[") && !failed_) {
+    Take();
+    if (At("]") || At("*")) {
+      Accept("*");
+      type.dimensions.emplace_back();
+    } else {
+      type.dimensions.push_back(ParseExpr());
+    }
+    Expect("]", "a dimension");
+    type.span = type.span.To(PreviousSpan());
+  }
+  return type;
+}
+
+}  // namespace rondo::lang

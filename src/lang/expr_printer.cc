@@ -1,0 +1,120 @@
+#include "lang/expr_printer.h"
+
+#include <fmt/format.h>
+
+namespace rondo::lang {
+namespace {
+
+// How tightly an expression binds; larger binds tighter.
+enum Level : int { kQuantifierLevel, kImpliesLevel, kOrLevel, kAndLevel, kNotLevel, kCompareLevel, kSumLevel, kProductLevel, kUnaryLevel, kPostfixLevel };
+
+int LevelOf(const Expr& e) {
+  switch (e.kind) {
+    case ExprKind::kQuantifier: return kQuantifierLevel;
+    case ExprKind::kUnary: return e.text == "not" ? kNotLevel : kUnaryLevel;
+    case ExprKind::kBinary:
+      if (e.text == "implies") return kImpliesLevel;
+      if (e.text == "or") return kOrLevel;
+      if (e.text == "and") return kAndLevel;
+      if (e.text == "+" || e.text == "-") return kSumLevel;
+      if (e.text == "*" || e.text == "/" || e.text == "%") return kProductLevel;
+      return kCompareLevel;
+    case ExprKind::kError:
+    case ExprKind::kInt:
+    case ExprKind::kFloat:
+    case ExprKind::kString:
+    case ExprKind::kBool:
+    case ExprKind::kName:
+    case ExprKind::kPid:
+    case ExprKind::kField:
+    case ExprKind::kIndex:
+    case ExprKind::kCall:
+    case ExprKind::kList:
+    case ExprKind::kTuple: return kPostfixLevel;
+  }
+  return kPostfixLevel;
+}
+
+class Printer {
+ public:
+  explicit Printer(const ExprPool& pool) : pool_(pool) {}
+
+  std::string Print(ExprId id, int least) const {
+    const Expr& e = pool_[id];
+    const std::string text = Bare(e);
+    return LevelOf(e) < least ? fmt::format("({})", text) : text;
+  }
+
+  std::string Type(const TypeSyntax& type) const {
+    std::string text = type.name;
+    for (size_t i = 0; i < type.arguments.size(); ++i) text += (i == 0 ? "<" : ", ") + Type(type.arguments[i]);
+    if (!type.arguments.empty()) text += ">";
+    for (const ExprId d : type.dimensions) text += fmt::format("[{}]", d.valid() ? Print(d, 0) : "");
+    return text;
+  }
+
+ private:
+  std::string Items(const Expr& e, size_t from) const {
+    std::string text;
+    for (size_t i = from; i < e.args.size(); ++i) text += (i == from ? "" : ", ") + Print(e.args[i], 0);
+    return text;
+  }
+
+  std::string Bare(const Expr& e) const {
+    const int level = LevelOf(e);
+    switch (e.kind) {
+      case ExprKind::kError: return "<error>";
+      case ExprKind::kInt:
+      case ExprKind::kFloat:
+      case ExprKind::kString:
+      case ExprKind::kBool:
+      case ExprKind::kName: return e.text;
+      case ExprKind::kPid: return "pid";
+      case ExprKind::kField: return fmt::format("{}.{}", Base(e.args[0]), e.text);
+      case ExprKind::kIndex: return fmt::format("{}[{}]", Base(e.args[0]), Print(e.args[1], 0));
+      case ExprKind::kCall: return fmt::format("{}({})", Base(e.args[0]), Items(e, 1));
+      case ExprKind::kUnary:
+        return fmt::format("{}{}", e.text == "not" ? "not " : "-", Print(e.args[0], level));
+      case ExprKind::kBinary: {
+        // `implies` binds to the right, the rest to the left; comparisons do not chain.
+        const int left = e.text == "implies" || level == kCompareLevel ? level + 1 : level;
+        const int right = e.text == "implies" ? level : level + 1;
+        return fmt::format("{} {} {}", Print(e.args[0], left), e.text, Right(e, right));
+      }
+      case ExprKind::kList: return fmt::format("[{}]", Items(e, 0));
+      case ExprKind::kTuple: return fmt::format("({})", Items(e, 0));
+      case ExprKind::kQuantifier: {
+        std::string binders;
+        for (const Binder& b : e.binders) {
+          if (!binders.empty()) binders += ", ";
+          for (size_t i = 0; i < b.names.size(); ++i) binders += (i == 0 ? "" : ", ") + b.names[i];
+          binders += " in " + (b.domain.valid() ? Print(b.domain, kSumLevel) : Type(b.type));
+        }
+        return fmt::format("{} {}: {}", e.text, binders, Print(e.args[0], 0));
+      }
+    }
+    return "";
+  }
+
+  // `1.x` would read as a number.
+  std::string Base(ExprId id) const {
+    const ExprKind kind = pool_[id].kind;
+    const std::string text = Print(id, kPostfixLevel);
+    return kind == ExprKind::kInt || kind == ExprKind::kFloat ? fmt::format("({})", text) : text;
+  }
+
+  // A quantifier reaches as far to the right as it can; behind `implies` nothing else can follow.
+  std::string Right(const Expr& e, int least) const {
+    const ExprId right = e.args[1];
+    return Print(right, e.text == "implies" && pool_[right].kind == ExprKind::kQuantifier ? 0 : least);
+  }
+
+  const ExprPool& pool_;
+};
+
+}  // namespace
+
+std::string PrintExpr(const ExprPool& pool, ExprId expr) { return Printer(pool).Print(expr, 0); }
+std::string PrintType(const ExprPool& pool, const TypeSyntax& type) { return Printer(pool).Type(type); }
+
+}  // namespace rondo::lang

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/id.h"
+#include "diag/source.h"
+
+/// The syntax of types and expressions, common to all of Rondo's languages.
+namespace rondo::lang {
+
+using ExprId = base::Id<struct ExprTag>;
+
+/// `float`, `pos[N_sys]`, `List<Task>`: a name, arguments, and one entry for each pair of brackets.
+struct TypeSyntax {
+  std::string name;
+  diag::Span span;
+  std::vector<TypeSyntax> arguments;
+  std::vector<ExprId> dimensions;  ///< an invalid id for `[]` and `[*]`
+};
+
+enum class ExprKind : uint8_t {
+  kError,       // reported already
+  kInt,         // text
+  kFloat,       // text
+  kString,      // text, with its quotes
+  kBool,        // text: true or false
+  kName,        // text
+  kPid,
+  kField,       // args: base; text: member
+  kIndex,       // args: base, index
+  kCall,        // args: callee, arguments...
+  kUnary,       // text: - or not
+  kBinary,      // text: operator
+  kList,        // args: items
+  kTuple,       // args: items, at least 2
+  kQuantifier,  // text: forall or exists; binders; args: body
+};
+
+/// `i, j in ID`: the domain is a type if `type` has a name, else the expression `domain`.
+struct Binder {
+  std::vector<std::string> names;
+  std::vector<diag::Span> spans;
+  TypeSyntax type;
+  ExprId domain;
+};
+
+struct Expr {
+  ExprKind kind = ExprKind::kError;
+  diag::Span span;
+  std::string text;
+  std::vector<ExprId> args;
+  std::vector<Binder> binders;
+};
+
+/// Owns the expressions of one parse.
+class ExprPool {
+ public:
+  ExprId Add(Expr expr) {
+    exprs_.push_back(std::move(expr));
+    return ExprId(exprs_.size() - 1);
+  }
+  const Expr& operator[](ExprId id) const { return exprs_[id.index()]; }
+  size_t size() const { return exprs_.size(); }
+
+ private:
+  std::vector<Expr> exprs_;
+};
+
+}  // namespace rondo::lang

@@ -1,0 +1,23 @@
+#include "solve/cache/caching_solver.h"
+
+#include <fmt/format.h>
+
+#include "expr/smtlib.h"
+
+namespace rondo::solve::cache {
+
+Answer CachingSolver::Check(const Query& query, const Budget& budget, const base::StopToken& stop) const {
+  if (!query.wanted.empty() || !budget.core) return solver_.Check(query, budget, stop);
+  std::vector<expr::SmtAssertion> assertions;
+  for (const Assertion& a : query.assertions) assertions.push_back({a.formula, a.group});
+  const std::string question = fmt::format("; {}\n{}", name(), expr::ToSmtLib(*query.arena, assertions));
+  if (const auto entry = cache_.Find(question)) {
+    ++hits_;
+    return Unsat{entry->core};
+  }
+  Answer answer = solver_.Check(query, budget, stop);
+  if (const auto* unsat = std::get_if<Unsat>(&answer)) cache_.Store(question, {name(), unsat->core});
+  return answer;
+}
+
+}  // namespace rondo::solve::cache

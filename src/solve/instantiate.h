@@ -1,0 +1,34 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "solve/solver.h"
+
+namespace rondo::solve {
+
+struct InstantiationLimits {
+  int rounds = 3;                ///< how often instances may give rise to further instances
+  size_t per_quantifier = 4000;  ///< instances of one quantifier
+  size_t total = 20000;
+};
+
+/// Quantifier-free assertions that follow from `assertions` (so that unsatisfiability carries over):
+/// - existential variables become constants;
+/// - universal variables are replaced by the closed terms that stand where the variable stands: a variable that is an
+///   argument of f, or an index of an array, takes every closed term that occurs at the same place of f or of that
+///   array. For formulas in which variables occur only in such places this loses nothing (Ge & de Moura, Complete
+///   instantiation for quantified formulas, CAV 2009), up to `limits`;
+/// - a variable in no such place takes the `fallback` terms of its sort;
+/// - quantifiers under equality or if-then-else are named by a Boolean constant.
+/// `complete` is false when something was left out, so that satisfiability need not carry over.
+struct Ground {
+  std::vector<Assertion> assertions;
+  bool complete = true;
+};
+Ground Instantiate(expr::Arena& arena, const std::vector<Assertion>& assertions,
+                   const std::map<expr::SortId, std::vector<expr::TermId>>& fallback,
+                   const InstantiationLimits& limits = {});
+
+}  // namespace rondo::solve

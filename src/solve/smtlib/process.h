@@ -1,0 +1,23 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "base/stop.h"
+
+namespace rondo::solve::smtlib {
+
+struct ProcessOutput {
+  int status = 0;  ///< exit status; 128 + signal if it was killed
+  bool timed_out = false;
+  std::string text;  ///< standard output, then nothing of standard error
+};
+
+/// Runs `command` (searched in PATH) with `input` on its standard input until it ends, `limit` passes or `stop` asks.
+/// The child is killed in the latter cases. @error when it cannot be started.
+base::Result<ProcessOutput> RunProcess(const std::vector<std::string>& command, const std::string& input,
+                                       std::chrono::milliseconds limit, const base::StopToken& stop);
+
+}  // namespace rondo::solve::smtlib

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "solve/solver.h"
+
+namespace rondo::solve::smtlib {
+
+/// Any program that reads an SMT-LIB 2 script from standard input and prints `sat`, `unsat` or `unknown`.
+/// Gives verdicts only: no core, no values.
+class SmtLibSolver : public Solver {
+ public:
+  /// `command` is a program and its arguments, separated by blanks; `cvc5` and `z3` get the arguments that they need.
+  explicit SmtLibSolver(const std::string& command);
+
+  std::string name() const override { return name_; }
+  Answer Check(const Query& query, const Budget& budget, const base::StopToken& stop) const override;
+
+ private:
+  std::string name_;
+  std::vector<std::string> command_;
+};
+
+}  // namespace rondo::solve::smtlib

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/stop.h"
+#include "expr/arena.h"
+#include "solve/value.h"
+
+/// One question, several engines: is there an interpretation that satisfies all assertions?
+namespace rondo::solve {
+
+/// Assertions with the same non-empty group are reported together in an unsatisfiable core.
+struct Assertion {
+  expr::TermId formula;
+  std::string group;
+};
+
+struct Query {
+  const expr::Arena* arena = nullptr;
+  std::vector<Assertion> assertions;
+  /// Closed terms whose values a model should give.
+  std::vector<expr::TermId> wanted;
+};
+
+/// No interpretation satisfies the assertions.
+struct Unsat {
+  std::vector<std::string> core;  ///< groups that the engine's refutation used; a superset of what is necessary
+};
+
+/// The engine found an interpretation; values of the wanted terms that it could evaluate.
+struct Sat {
+  std::map<expr::TermId, Value> values;
+};
+
+/// The engine gave up.
+struct Unknown {
+  std::string reason;
+};
+
+using Answer = std::variant<Unsat, Sat, Unknown>;
+
+struct Budget {
+  std::chrono::milliseconds time{10'000};
+  bool core = true;  ///< compute a core when unsatisfiable
+};
+
+/// Thread-safe: one object may serve several threads, each call is independent. Errors of the engine are `Unknown`.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  virtual std::string name() const = 0;
+  virtual Answer Check(const Query& query, const Budget& budget, const base::StopToken& stop) const = 0;
+};
+
+}  // namespace rondo::solve
