@@ -92,6 +92,7 @@ ExprId ExprParser::ParseImplies() {
   const ExprId left = ParseOr();
   if (!At("implies") && !At("=>")) return left;
   Take();
+  AllowLineBreak();
   Depth depth(*this);
   if (depth.TooDeep()) return Fail(Peek().span);
   return Binary("implies", left, ParseImplies());
@@ -106,6 +107,7 @@ ExprId ExprParser::ParseQuantifier() {
     quantifier.binders.push_back(std::move(binder));
   } while (Accept(","));
   if (!Accept(".") && !Expect(":", "the variables of a quantifier")) return Fail(word.span);
+  AllowLineBreak();
   const ExprId body = ParseExpr();
   quantifier.args = {body};
   quantifier.span = quantifier.span.To(pool_[body].span);
@@ -139,6 +141,7 @@ ExprId ExprParser::ParseOr() {
   ExprId left = ParseAnd();
   while (At("or") || At("||")) {
     Take();
+    AllowLineBreak();
     left = Binary("or", left, ParseAnd());
   }
   return left;
@@ -148,6 +151,7 @@ ExprId ExprParser::ParseAnd() {
   ExprId left = ParseNot();
   while (At("and") || At("&&")) {
     Take();
+    AllowLineBreak();
     left = Binary("and", left, ParseNot());
   }
   return left;

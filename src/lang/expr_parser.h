@@ -26,6 +26,8 @@ class ExprParser {
 
   /// Words that cannot be names of variables in this language.
   virtual bool IsReserved(std::string_view word) const = 0;
+  /// Called where an expression must go on: languages in which lines end here may go on in the next line.
+  virtual void AllowLineBreak() {}
   virtual ~ExprParser() = default;
 
   const Token& Peek(size_t ahead = 0) const;

@@ -6,6 +6,7 @@
 
 #include "expr/substitute.h"
 #include "solve/places.h"
+#include "solve/triggers.h"
 
 namespace rondo::solve {
 namespace {
@@ -19,6 +20,9 @@ struct Universal {
   TermId body;
   std::string group;
   std::map<TermId, std::vector<VariablePlace>> places;
+  /// Variables whose values come from triggers, and those triggers.
+  std::vector<TermId> matched;
+  std::vector<std::vector<TermId>> triggers;
   std::set<std::vector<TermId>> done;
 };
 
@@ -61,8 +65,15 @@ class Engine {
 
   void AddUniversal(TermId forall, const std::string& group) {
     const auto args = arena_.args(forall);
-    Universal u{{args.begin(), args.end() - 1}, args.back(), group, {}, {}};
+    Universal u{{args.begin(), args.end() - 1}, args.back(), group, {}, {}, {}, {}};
     u.places = PlacesOf(arena_, u.body, u.variables);
+    if (limits_.mode == InstantiationMode::kTriggers) {
+      for (const TermId v : u.variables) {
+        if (arena_.sort_of(v) != arena_.Int()) u.matched.push_back(v);
+      }
+      if (u.matched.size() > 1) u.triggers = FindTriggers(arena_, u.body, u.matched);
+      if (u.triggers.empty()) u.matched.clear();
+    }
     universals_.push_back(std::move(u));
   }
 
@@ -162,28 +173,43 @@ class Engine {
   }
 
   bool InstantiateOne(size_t which) {
-    std::vector<std::vector<TermId>> candidates;
-    for (const TermId v : universals_[which].variables) candidates.push_back(Candidates(universals_[which], v));
-    std::vector<TermId> tuple(candidates.size());
+    const std::vector<TermId> variables = universals_[which].variables;
+    const std::vector<TermId> matched = universals_[which].matched;
+    std::map<TermId, std::vector<TermId>> candidates;
+    for (const TermId v : variables) {
+      if (std::find(matched.begin(), matched.end(), v) == matched.end()) candidates[v] = Candidates(universals_[which], v);
+    }
+    std::vector<std::vector<TermId>> matches;
+    for (const std::vector<TermId>& trigger : std::vector(universals_[which].triggers)) {
+      const auto found = MatchTrigger(arena_, index_, trigger, matched, limits_.per_quantifier);
+      matches.insert(matches.end(), found.begin(), found.end());
+    }
+    if (matched.empty()) matches.emplace_back();
     bool progress = false;
+    expr::Substitution map;
     const std::function<void(size_t)> choose = [&](size_t i) {
       if (universals_[which].done.size() >= limits_.per_quantifier || made_ >= limits_.total) return;
-      if (i < candidates.size()) {
-        for (const TermId t : candidates[i]) {
-          tuple[i] = t;
+      if (i < variables.size()) {
+        const auto it = candidates.find(variables[i]);
+        if (it == candidates.end()) return choose(i + 1);  // bound by the match
+        for (const TermId t : it->second) {
+          map[variables[i]] = t;
           choose(i + 1);
         }
         return;
       }
+      std::vector<TermId> tuple;
+      for (const TermId v : variables) tuple.push_back(map.at(v));
       if (!universals_[which].done.insert(tuple).second) return;
       progress = true;
       ++made_;
-      expr::Substitution map;
-      for (size_t k = 0; k < tuple.size(); ++k) map[universals_[which].variables[k]] = tuple[k];
       const std::string group = universals_[which].group;
       Assert(Substitute(arena_, universals_[which].body, map), group);
     };
-    choose(0);
+    for (const std::vector<TermId>& match : matches) {
+      for (size_t k = 0; k < matched.size(); ++k) map[matched[k]] = match[k];
+      choose(0);
+    }
     return progress;
   }
 

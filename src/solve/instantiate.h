@@ -8,8 +8,16 @@
 
 namespace rondo::solve {
 
+enum class InstantiationMode : uint8_t {
+  /// Several variables that are not integers take only values that stand together in some application: few instances.
+  kTriggers,
+  /// Every variable takes every term that stands where it stands: all combinations.
+  kPlaces,
+};
+
 struct InstantiationLimits {
-  int rounds = 3;                ///< how often instances may give rise to further instances
+  InstantiationMode mode = InstantiationMode::kTriggers;
+  int rounds = 4;                ///< how often instances may give rise to further instances
   size_t per_quantifier = 4000;  ///< instances of one quantifier
   size_t total = 20000;
 };

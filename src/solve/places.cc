@@ -67,6 +67,7 @@ void ForEachPlace(const Arena& arena, TermId t, const std::function<void(Place, 
 
 void PlaceIndex::Add(TermId formula) {
   expr::VisitPostorder(arena_, formula, seen_, [&](TermId t) {
+    if (arena_.op(t) == Op::kApply && !arena_.IsOpen(t)) applications_[arena_.symbol_of(t)].push_back(t);
     ForEachPlace(arena_, t, [&](Place place, TermId arg) {
       if (!arena_.IsOpen(arg) && known_[place].insert(arg).second) terms_[place].push_back(arg);
     });
@@ -77,6 +78,12 @@ const std::vector<TermId>& PlaceIndex::At(const Place& place) const {
   static const std::vector<TermId> none;
   const auto it = terms_.find(place);
   return it == terms_.end() ? none : it->second;
+}
+
+const std::vector<TermId>& PlaceIndex::Applications(expr::SymbolId function) const {
+  static const std::vector<TermId> none;
+  const auto it = applications_.find(function);
+  return it == applications_.end() ? none : it->second;
 }
 
 std::map<TermId, std::vector<VariablePlace>> PlacesOf(const Arena& arena, TermId body,

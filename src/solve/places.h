@@ -23,11 +23,14 @@ class PlaceIndex {
   explicit PlaceIndex(const expr::Arena& arena) : arena_(arena) {}
   void Add(expr::TermId formula);
   const std::vector<expr::TermId>& At(const Place& place) const;
+  /// The closed applications of a function.
+  const std::vector<expr::TermId>& Applications(expr::SymbolId function) const;
 
  private:
   const expr::Arena& arena_;
   std::unordered_set<expr::TermId> seen_;
   std::map<Place, std::vector<expr::TermId>> terms_;
+  std::map<expr::SymbolId, std::vector<expr::TermId>> applications_;
   std::map<Place, std::unordered_set<expr::TermId>> known_;
 };
 

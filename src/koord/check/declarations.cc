@@ -80,8 +80,8 @@ void Checker::CheckOrder() {
     const int rank = std::visit(Rank{}, program_.items[i]);
     if (rank < 0) continue;
     if (rank < highest) {
-      const auto* function = std::get_if<FunctionDef>(&program_.items[i]);
-      if (function != nullptr && !function->has_body) continue;  // signatures may stand beside their summaries
+      // A specification brings its own functions, often in a file of its own.
+      if (std::holds_alternative<FunctionDef>(program_.items[i])) continue;
       diagnostics_.Report(Kind::kKoordSectionOrder, program_.item_spans[i], fmt::format("{} after {}", kNames[rank], kNames[highest]))
           .At(highest_span, "this comes last by convention")
           .Help("the usual order: definitions, modules, variables, `init`, events, specification");
@@ -195,7 +195,7 @@ void Checker::DeclareVariable(VariableKind kind, const std::string& module, cons
     if (!shape.dimensions.empty()) variable.length = shape.dimensions[0];
     else if (!shape.type.dimensions.empty()) variable.length = shape.type.dimensions[0];
   }
-  if (kind == VariableKind::kSensor && decl.type.name == "PathPlanner" && !model_.named_types.contains("PathPlanner")) {
+  if (kind == VariableKind::kSensor && decl.type.name == "PathPlanner" && !claimed_.contains("PathPlanner")) {
     Function function{name, {}, {}, {}, nullptr, false, decl.span, static_cast<int>(model_.variables.size())};
     variable.function = static_cast<int>(model_.functions.size());
     model_.functions.push_back(std::move(function));

@@ -42,7 +42,8 @@ Effect Executor::Run(const EventDef& event, const View& start, TermId robot) {
   frame_ = Frame{&start, nullptr, robot, false, &state, &effect, {}};
   // Rule SelectEvent: the precondition is evaluated on the robot's own copy.
   const TermId guard = event.pre.valid() ? Eval(event.pre) : arena_.True();
-  effect.enabled = arena_.And(guard, arena_.Not(arena_.Select(start.stopped, robot)));
+  const TermId runs = vocabulary_.robots_stop() ? arena_.Not(arena_.Select(start.stopped, robot)) : arena_.True();
+  effect.enabled = arena_.And(guard, runs);
   state.path = guard;
   Body(event.body);
   return Finish(state, std::move(effect));

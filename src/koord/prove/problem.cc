@@ -69,22 +69,29 @@ Problem Problems::Ground(std::vector<Assertion> assertions, std::vector<TermId> 
   Append(assertions, theory_.Background());
   if (options_.expand && vocabulary_.uses_dist()) assertions.push_back({vocabulary_.DistDefinition(), ""});
   Problem problem;
-  problem.participants = participants;
-  participants.push_back(robot_);
-  std::unordered_set<TermId> lists_done;
+  problem.participants = std::move(participants);
+  problem.assertions = std::move(assertions);
+  Instantiate(problem, solve::InstantiationMode::kTriggers);
+  return problem;
+}
+
+// Instances bring new list terms, whose axioms bring new quantifiers: repeat until nothing new comes up.
+void Problems::Instantiate(Problem& problem, solve::InstantiationMode mode) {
+  std::vector<TermId> fallback = problem.participants;
+  fallback.push_back(robot_);
+  solve::InstantiationLimits limits;
+  limits.mode = mode;
   for (int pass = 0; pass < 4; ++pass) {
-    solve::Ground ground = solve::Instantiate(arena_, assertions, {{arena_.Int(), participants}});
+    solve::Ground ground = solve::Instantiate(arena_, problem.assertions, {{arena_.Int(), fallback}}, limits);
     std::vector<TermId> formulas;
     for (const Assertion& a : ground.assertions) formulas.push_back(a.formula);
-    const std::vector<TermId> axioms = expr::ListAxioms(arena_, formulas, lists_done);
+    const std::vector<TermId> axioms = expr::ListAxioms(arena_, formulas, problem.lists);
     problem.query.arena = &arena_;
     problem.query.assertions = std::move(ground.assertions);
     problem.complete = ground.complete;
     if (axioms.empty()) break;
-    for (const TermId axiom : axioms) assertions.push_back({axiom, ""});
+    for (const TermId axiom : axioms) problem.assertions.push_back({axiom, ""});
   }
-  problem.assertions = std::move(assertions);
-  return problem;
 }
 
 Problem Problems::Initially(size_t invariant) {

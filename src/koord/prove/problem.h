@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "koord/prove/theory.h"
+#include "solve/instantiate.h"
 
 namespace rondo::koord {
 
@@ -14,6 +15,7 @@ struct Problem {
   solve::Query query;                        ///< without; see `Problems::Ground`
   bool complete = false;  ///< nothing was lost on the way: satisfiable means satisfiable
   std::vector<TermId> participants;
+  std::unordered_set<TermId> lists;       ///< whose axioms are among the assertions
 };
 
 /// States the proof obligations of docs/theory.md for one program and one number of robots: any (symbolic), or a
@@ -54,6 +56,9 @@ class Problems {
   Problem PromiseNow(size_t p);
   std::vector<Theory::Promise> promises() { return theory_.Promises(round_.settled(), round_.end(), robot_); }
 
+  /// States the question again with many more instances of its quantifiers.
+  void Strengthen(Problem& problem) { Instantiate(problem, solve::InstantiationMode::kPlaces); }
+
   /// The robot of the problems about one robot.
   TermId robot() const { return robot_; }
   TermId size() const { return vocabulary_.robots(); }
@@ -63,6 +68,7 @@ class Problems {
  private:
   std::vector<solve::Assertion> Everything(const View& view);
   std::vector<TermId> Everyone();
+  void Instantiate(Problem& problem, solve::InstantiationMode mode);
   TermId Refute(TermId goal);
   Problem Undefined(size_t action, TermId undefined, TermId robot);
   Problem Ground(std::vector<solve::Assertion> assertions, std::vector<TermId> participants);

@@ -28,6 +28,7 @@ struct Task {
   solve::Answer answer = solve::Unknown{"not asked"};
   double seconds = 0;
 
+  bool Undecided() const { return IsObligation() && !std::holds_alternative<solve::Unsat>(answer); }
   bool IsObligation() const { return kind == TaskKind::kInitially || kind == TaskKind::kStep || kind == TaskKind::kDefined; }
 };
 
@@ -42,8 +43,16 @@ class Prover {
     if (diagnostics_.errors() > errors) return std::move(report_);
     State(problems);
     if (diagnostics_.errors() > errors) return std::move(report_);
+    Solve(0);
+    // What the few instances did not decide gets many.
+    const size_t more = std::count_if(tasks_.begin(), tasks_.end(), [](const Task& t) { return t.Undecided(); });
+    if (more > 0 && !options_.stop.cancelled()) {
+      for (Task& task : tasks_) {
+        if (task.Undecided()) problems.Strengthen(task.problem);
+      }
+      Solve(1);
+    }
     WriteFiles();
-    Solve();
     report_.interrupted = options_.stop.cancelled();
     MakeRows(problems);
     Reporter reporter(sources_, model_, options_, problems, diagnostics_, report_);
@@ -99,32 +108,37 @@ class Prover {
     }
   }
 
-  void Solve() {
+  // Round 0 asks everything, round 1 what is undecided.
+  void Solve(int round) {
+    std::vector<Task*> todo;
+    for (Task& task : tasks_) {
+      if (round == 0 || task.Undecided()) todo.push_back(&task);
+    }
     std::mutex mutex;
     size_t done = 0;
-    base::ParallelFor(tasks_.size(), options_.jobs, [&](size_t i) {
-      Task& task = tasks_[i];
+    base::ParallelFor(todo.size(), options_.jobs, [&](size_t i) {
+      Task& task = *todo[i];
       const auto start = Clock::now();
       solve::Budget budget{options_.timeout, true};
       // A sanity check that takes long is no reason to wait: it can only warn.
       if (!task.IsObligation()) budget.time = std::min(budget.time, std::chrono::milliseconds(2000));
       task.answer = options_.solver->Check(task.problem.query, budget, options_.stop);
-      if (std::holds_alternative<solve::Unknown>(task.answer) && task.IsObligation() && !options_.stop.StopRequested()) {
+      if (round == 1 && std::holds_alternative<solve::Unknown>(task.answer) && !options_.stop.StopRequested()) {
         // The instances were too many or too hard: let the solver choose its own.
         solve::Query whole = task.problem.query;
         whole.assertions = task.problem.assertions;
         solve::Answer second = options_.solver->Check(whole, budget, options_.stop);
         if (std::holds_alternative<solve::Unsat>(second)) task.answer = std::move(second);
       }
-      task.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      task.seconds += std::chrono::duration<double>(Clock::now() - start).count();
       std::optional<solve::Answer> other;
-      if (options_.cross_check != nullptr && task.IsObligation()) {
+      if (options_.cross_check != nullptr && task.IsObligation() && (round == 1 || !task.Undecided())) {
         other = options_.cross_check->Check(task.problem.query, budget, options_.stop);
       }
       const std::scoped_lock lock(mutex);
       if (other) Compare(task, *other);
       ++done;
-      if (options_.progress) options_.progress(done, tasks_.size(), task.name);
+      if (options_.progress) options_.progress(done, todo.size(), task.name);
     });
   }
 

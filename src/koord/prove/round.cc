@@ -133,7 +133,7 @@ TermId Round::StateOf(TermId r) {
     }
   }
   const TermId stopped = arena_.Select(start_.stopped, r);
-  facts.push_back(arena_.Eq(arena_.Select(end_.stopped, r),
+  if (vocabulary_.robots_stop()) facts.push_back(arena_.Eq(arena_.Select(end_.stopped, r),
                             arena_.Or(stopped, ByAction(r, [](const Effect& e) { return e.stops; }, arena_.False()))));
   return arena_.And(std::move(facts));
 }

@@ -35,6 +35,8 @@ class Vocabulary {
   expr::SymbolId Dist();
   bool uses_dist() const { return uses_dist_; }
 
+  /// Can a robot stop at all? If not, no state has to say that it has not.
+  bool robots_stop() const { return robots_stop_; }
   TermId robots() const { return robots_; }
   std::optional<int64_t> fixed_robots() const { return fixed_; }
   /// 0 <= i < N_sys
@@ -57,6 +59,7 @@ class Vocabulary {
   std::unordered_map<TypeId, SortId> sorts_;
   std::vector<TermId> literals_;
   bool uses_dist_ = false;
+  bool robots_stop_ = false;
 };
 
 }  // namespace rondo::koord

@@ -17,6 +17,9 @@ class Parser : public lang::ExprParser {
 
  protected:
   bool IsReserved(std::string_view word) const override { return IsReservedWord(word); }
+  void AllowLineBreak() override {
+    if (in_specification_) AcceptContinuation("");
+  }
 
  private:
   // items.cc
@@ -63,6 +66,7 @@ class Parser : public lang::ExprParser {
 
   Program& program_;
   int nesting_ = 0;
+  bool in_specification_ = false;
   int continuation_ = 0;  // blocks opened by continuation lines of a specification item
 };
 

@@ -28,12 +28,11 @@ bool Parser::ParseSpecItem() {
   return true;
 }
 
-// A specification may go on in deeper lines. Takes the line end and the deeper line if `word` (or anything, if empty)
-// stands there.
+// A specification may go on in deeper lines. Takes the line end if `word` (or anything, if empty) follows there.
 bool Parser::AcceptContinuation(std::string_view word) {
   if (!AtKind(TokenKind::kNewline)) return false;
   const bool deeper = Peek(1).kind == TokenKind::kIndent && (word.empty() || Peek(2).text == word);
-  const bool same = continuation_ > 0 && !word.empty() && Peek(1).text == word;
+  const bool same = continuation_ > 0 && (word.empty() ? Peek(1).kind != TokenKind::kDedent : Peek(1).text == word);
   if (!deeper && !same) return false;
   Take();
   if (deeper) {
@@ -44,8 +43,11 @@ bool Parser::AcceptContinuation(std::string_view word) {
 }
 
 ExprId Parser::ParseSpecBody() {
+  in_specification_ = true;
   AcceptContinuation("");
-  return ParseExpr();
+  const ExprId body = ParseExpr();
+  in_specification_ = false;
+  return body;
 }
 
 void Parser::EndSpecItem() {
