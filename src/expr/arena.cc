@@ -60,7 +60,8 @@ SymbolId Arena::Declare(std::string_view name, std::vector<SortId> parameters, S
 
 SymbolId Arena::Fresh(std::string_view name, std::vector<SortId> parameters, SortId result) {
   std::string unique(name);
-  for (int i = 1; symbol_names_.contains(unique); ++i) unique = fmt::format("{}!{}", name, i);
+  int& serial = serials_[unique];
+  while (symbol_names_.contains(unique)) unique = fmt::format("{}!{}", name, ++serial);
   return Declare(unique, std::move(parameters), result);
 }
 

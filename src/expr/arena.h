@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -162,11 +163,14 @@ class Arena {
   TermId Junction(Op op, std::vector<TermId> args);
   TermId Quantify(Op op, std::vector<TermId> variables, TermId body);
   TermId Compare(Op op, TermId a, TermId b);
+  /// a - b if that is a number whatever the variables are.
+  std::optional<Rational> ConstantDistance(TermId a, TermId b) const;
 
   std::vector<Sort> sorts_;
   std::unordered_map<std::string, SortId> sort_names_;
   std::vector<Symbol> symbols_;
   std::unordered_map<std::string, SymbolId> symbol_names_;
+  std::unordered_map<std::string, int> serials_;  // of fresh symbols, by name
   std::vector<Rational> numbers_;
   std::unordered_map<std::string, uint32_t> number_ids_;
   std::vector<Term> terms_;

@@ -34,6 +34,20 @@ void Accumulate(const Arena& arena, TermId t, const Rational& factor, Linear& su
 
 }  // namespace
 
+// Builds no terms: comparisons are made far more often than they can be decided here.
+std::optional<Rational> Arena::ConstantDistance(TermId a, TermId b) const {
+  if (a == b) return Rational(0);
+  const auto composed = [&](TermId t) { return op(t) == Op::kNumber || op(t) == Op::kAdd || op(t) == Op::kMul; };
+  if (!composed(a) && !composed(b)) return std::nullopt;
+  Linear sum;
+  Accumulate(*this, a, Rational(1), sum);
+  Accumulate(*this, b, Rational(-1), sum);
+  for (const auto& [t, coefficient] : sum.coefficients) {
+    if (!coefficient.IsZero()) return std::nullopt;
+  }
+  return sum.constant;
+}
+
 TermId Arena::Add(std::vector<TermId> args) {
   CHECK(!args.empty());
   const SortId s = sort_of(args[0]);
@@ -116,9 +130,8 @@ TermId Arena::Lt(TermId a, TermId b) { return Compare(Op::kLt, a, b); }
 
 TermId Arena::Compare(Op op, TermId a, TermId b) {
   CHECK(sort_of(a) == sort_of(b) && (sort_of(a) == int_ || sort_of(a) == real_));
-  const TermId distance = Sub(a, b);
-  if (IsNumber(distance)) {
-    const bool holds = op == Op::kLe ? number(distance) <= Rational(0) : number(distance) < Rational(0);
+  if (const auto distance = ConstantDistance(a, b)) {
+    const bool holds = op == Op::kLe ? *distance <= Rational(0) : *distance < Rational(0);
     return Fire(Rewrite::kCompareDistance, op, bool_, 0, {a, b}, Constant(holds));
   }
   return Intern(op, bool_, 0, std::vector{a, b});

@@ -107,8 +107,7 @@ TermId Arena::Eq(TermId a, TermId b) {
     return fire(Rewrite::kEqRecords, And(std::move(fields)));
   }
   if (sort_of(a) == int_ || sort_of(a) == real_) {
-    const TermId distance = Sub(a, b);
-    if (IsNumber(distance)) return fire(Rewrite::kEqDistance, Constant(number(distance).IsZero()));
+    if (const auto distance = ConstantDistance(a, b)) return fire(Rewrite::kEqDistance, Constant(distance->IsZero()));
   }
   if (b < a) return fire(Rewrite::kEqOrder, Intern(Op::kEq, bool_, 0, std::vector{b, a}));
   return Intern(Op::kEq, bool_, 0, std::vector{a, b});

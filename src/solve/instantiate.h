@@ -17,7 +17,7 @@ enum class InstantiationMode : uint8_t {
 
 struct InstantiationLimits {
   InstantiationMode mode = InstantiationMode::kTriggers;
-  int rounds = 4;                ///< how often instances may give rise to further instances
+  int rounds = 3;                ///< how often instances may give rise to further instances
   size_t per_quantifier = 4000;  ///< instances of one quantifier
   size_t total = 20000;
 };

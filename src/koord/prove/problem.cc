@@ -58,29 +58,35 @@ TermId Problems::Refute(TermId goal) {
   }
 }
 
-std::vector<Assertion> Problems::Everything(const View& view) {
-  std::vector<Assertion> result = theory_.Invariants(view);
-  Append(result, theory_.PortFacts(view));
+const std::vector<Assertion>& Problems::Everything(const View& view) {
+  std::vector<Assertion>& result = everything_[view.stopped];
+  if (result.empty()) {
+    result = theory_.Invariants(view);
+    Append(result, theory_.PortFacts(view));
+  }
   return result;
 }
 
 Problem Problems::Ground(std::vector<Assertion> assertions, std::vector<TermId> participants) {
   // The background comes last: only now is it known which parts of the vocabulary are in use.
-  Append(assertions, theory_.Background());
-  if (options_.expand && vocabulary_.uses_dist()) assertions.push_back({vocabulary_.DistDefinition(), ""});
+  const bool dist = vocabulary_.uses_dist();
+  if (background_.empty() || dist != background_dist_) {
+    background_ = theory_.Background();
+    if (options_.expand && vocabulary_.uses_dist()) background_.push_back({vocabulary_.DistDefinition(), ""});
+    background_dist_ = vocabulary_.uses_dist();
+  }
+  Append(assertions, background_);
   Problem problem;
   problem.participants = std::move(participants);
   problem.assertions = std::move(assertions);
-  Instantiate(problem, solve::InstantiationMode::kTriggers);
+  Instantiate(problem);
   return problem;
 }
 
 // Instances bring new list terms, whose axioms bring new quantifiers: repeat until nothing new comes up.
-void Problems::Instantiate(Problem& problem, solve::InstantiationMode mode) {
+void Problems::Instantiate(Problem& problem) {
   std::vector<TermId> fallback = problem.participants;
   fallback.push_back(robot_);
-  solve::InstantiationLimits limits;
-  limits.mode = mode;
   for (int pass = 0; pass < 4; ++pass) {
     solve::Ground ground = solve::Instantiate(arena_, problem.assertions, {{arena_.Int(), fallback}}, limits);
     std::vector<TermId> formulas;
@@ -111,21 +117,31 @@ Problem Problems::Initially(size_t invariant) {
   return Ground(std::move(assertions), std::move(participants));
 }
 
-Problem Problems::Step(size_t invariant, size_t action, bool reachable) {
+// `action` is taken by somebody, and nobody takes an earlier one.
+TermId Problems::First(size_t action, const std::vector<TermId>& participants) {
+  std::vector<TermId> facts;
+  std::vector<TermId> somebody;
+  for (const TermId r : participants) {
+    somebody.push_back(round_.Acts(r, action));
+    std::vector<TermId> allowed{round_.Acts(r, 0)};
+    for (size_t a = action; action > 0 && a < columns(); ++a) allowed.push_back(round_.Acts(r, a));
+    facts.push_back(arena_.Or(std::move(allowed)));
+  }
+  if (action > 0) facts.push_back(arena_.Or(std::move(somebody)));
+  return arena_.And(std::move(facts));
+}
+
+Problem Problems::Step(size_t invariant, std::optional<size_t> action, bool reachable) {
   const TermId refuted = Refute(theory_.Invariant(invariant, round_.end()));
   std::vector<Assertion> assertions{{refuted, ""}};
   Append(assertions, round_.Relate(refuted, Everyone()));
   const std::vector<TermId> participants = round_.participants();
-  // `action` is the first that anybody takes.
-  std::vector<TermId> somebody;
+  if (action) assertions.push_back({First(*action, participants), ""});
   for (const TermId r : participants) {
-    somebody.push_back(round_.Acts(r, action));
-    std::vector<TermId> later{round_.Acts(r, 0)};
-    for (size_t a = std::max<size_t>(action, 1); action > 0 && a < columns(); ++a) later.push_back(round_.Acts(r, a));
-    assertions.push_back({arena_.Or(std::move(later)), ""});
+    std::vector<Assertion>& promises = promises_[r];
+    if (promises.empty()) promises = theory_.PortPromises(round_, r);
+    Append(assertions, promises);
   }
-  if (action > 0) assertions.push_back({arena_.Or(std::move(somebody)), ""});
-  for (const TermId r : participants) Append(assertions, theory_.PortPromises(round_, r));
   Append(assertions, Everything(round_.start()));
   Append(assertions, theory_.PortFacts(round_.end()));
   if (reachable) {
@@ -133,6 +149,14 @@ Problem Problems::Step(size_t invariant, size_t action, bool reachable) {
     Append(assertions, theory_.Initially(round_.start()));
   }
   return Ground(std::move(assertions), participants);
+}
+
+Problem Problems::Follows(size_t invariant, const std::vector<size_t>& premises) {
+  const View& view = round_.start();
+  std::vector<Assertion> assertions{{Refute(theory_.Invariant(invariant, view)), ""}};
+  for (const size_t p : premises) assertions.push_back({theory_.Invariant(p, view), "invariant " + theory_.InvariantName(p)});
+  Append(assertions, theory_.PortFacts(view));
+  return Ground(std::move(assertions), Everyone());
 }
 
 const std::vector<DefinednessCheck>& Problems::ChecksOf(size_t action) {

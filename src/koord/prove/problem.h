@@ -36,8 +36,10 @@ class Problems {
   /// [Init] every initial state satisfies invariant i.
   Problem Initially(size_t invariant);
   /// [Step] from a state that satisfies all invariants, invariant i holds at every moment of a round in which `action`
-  /// is the first, in program order, that a participant takes (0: all skip). `reachable`: the state is initial as well.
-  Problem Step(size_t invariant, size_t action, bool reachable);
+  /// is the first, in program order, that a participant takes (0: all skip; none: any round). `reachable`: the state is initial as well.
+  Problem Step(size_t invariant, std::optional<size_t> action, bool reachable);
+  /// [Follows] at any moment, invariant i follows from the premises: invariants that hold at the same moment.
+  Problem Follows(size_t invariant, const std::vector<size_t>& premises);
   /// [Def] every operation of the action is defined whenever control reaches it.
   Problem Defined(size_t action);
   /// The same for one of its operations and one robot of a fixed team.
@@ -56,8 +58,8 @@ class Problems {
   Problem PromiseNow(size_t p);
   std::vector<Theory::Promise> promises() { return theory_.Promises(round_.settled(), round_.end(), robot_); }
 
-  /// States the question again with many more instances of its quantifiers.
-  void Strengthen(Problem& problem) { Instantiate(problem, solve::InstantiationMode::kPlaces); }
+  /// How quantifiers are instantiated from now on.
+  solve::InstantiationLimits limits;
 
   /// The robot of the problems about one robot.
   TermId robot() const { return robot_; }
@@ -66,9 +68,10 @@ class Problems {
   Vocabulary& vocabulary() { return vocabulary_; }
 
  private:
-  std::vector<solve::Assertion> Everything(const View& view);
+  const std::vector<solve::Assertion>& Everything(const View& view);
   std::vector<TermId> Everyone();
-  void Instantiate(Problem& problem, solve::InstantiationMode mode);
+  void Instantiate(Problem& problem);
+  TermId First(size_t action, const std::vector<TermId>& participants);
   TermId Refute(TermId goal);
   Problem Undefined(size_t action, TermId undefined, TermId robot);
   Problem Ground(std::vector<solve::Assertion> assertions, std::vector<TermId> participants);
@@ -82,6 +85,10 @@ class Problems {
   Round round_;
   std::optional<Round> init_;
   TermId robot_;
+  std::map<TermId, std::vector<solve::Assertion>> everything_;  // by the array `stopped` of the view
+  std::map<TermId, std::vector<solve::Assertion>> promises_;    // by robot
+  std::vector<solve::Assertion> background_;
+  bool background_dist_ = false;  // does the background speak of `dist`?
 };
 
 }  // namespace rondo::koord

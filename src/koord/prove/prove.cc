@@ -9,28 +9,13 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "expr/smtlib.h"
-#include "koord/prove/problem.h"
 #include "koord/prove/report.h"
+#include "koord/prove/task.h"
 
 namespace rondo::koord {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-enum class TaskKind : uint8_t { kInitially, kStep, kDefined, kSomeInitial, kSomeValues, kSomeEnabled, kSomeCondition, kSomePromise, kNow };
-
-struct Task {
-  TaskKind kind;
-  size_t subject = 0;  // invariant or promise
-  size_t action = 0;
-  std::string name;  // of the file and of the progress line
-  Problem problem;
-  solve::Answer answer = solve::Unknown{"not asked"};
-  double seconds = 0;
-
-  bool Undecided() const { return IsObligation() && !std::holds_alternative<solve::Unsat>(answer); }
-  bool IsObligation() const { return kind == TaskKind::kInitially || kind == TaskKind::kStep || kind == TaskKind::kDefined; }
-};
 
 class Prover {
  public:
@@ -39,20 +24,17 @@ class Prover {
 
   Report Run() {
     const size_t errors = diagnostics_.errors();
-    Problems problems(arena_, model_, {options_.robots, false}, diagnostics_);
+    // Stated once here for names and for what cannot be proved at all; each task states its own again, in parallel.
+    expr::Arena arena;
+    Problems problems(arena, model_, {options_.robots, false}, diagnostics_);
     if (diagnostics_.errors() > errors) return std::move(report_);
-    State(problems);
-    if (diagnostics_.errors() > errors) return std::move(report_);
-    Solve(0);
-    // What the few instances did not decide gets many.
-    const size_t more = std::count_if(tasks_.begin(), tasks_.end(), [](const Task& t) { return t.Undecided(); });
-    if (more > 0 && !options_.stop.cancelled()) {
-      for (Task& task : tasks_) {
-        if (task.Undecided()) problems.Strengthen(task.problem);
-      }
-      Solve(1);
-    }
-    WriteFiles();
+    tasks_ = ListTasks(problems);
+    for (const Task& task : tasks_) report_.obligations += task.kind == TaskKind::kRound ? problems.columns() : task.IsObligation() ? 1 : 0;
+    Solve(All(), Effort::kFew);
+    TryConsequences();
+    Solve(Undecided(), Effort::kMore);
+    tasks_ = SplitRounds(std::move(tasks_), problems);
+    Solve(Undecided(), Effort::kMost);
     report_.interrupted = options_.stop.cancelled();
     MakeRows(problems);
     Reporter reporter(sources_, model_, options_, problems, diagnostics_, report_);
@@ -63,83 +45,100 @@ class Prover {
   }
 
  private:
-  void Add(TaskKind kind, size_t subject, size_t action, std::string name, Problem problem) {
-    tasks_.push_back({kind, subject, action, std::move(name), std::move(problem)});
+  std::vector<Task*> All() {
+    std::vector<Task*> result;
+    for (Task& task : tasks_) result.push_back(&task);
+    return result;
   }
-
-  void State(Problems& problems) {
-    const std::vector<std::string>& actions = problems.round().actions();
-    const size_t count = problems.theory().invariants();
-    for (size_t i = 0; i < count; ++i) {
-      const std::string name = problems.theory().InvariantName(i);
-      Add(TaskKind::kInitially, i, 0, name + ".initially", problems.Initially(i));
-      for (size_t a = 1; a < actions.size(); ++a) Add(TaskKind::kStep, i, a, name + "." + actions[a], problems.Step(i, a, false));
-      Add(TaskKind::kStep, i, 0, name + ".skip", problems.Step(i, 0, false));
-    }
-    for (size_t a = problems.has_init() ? 0 : 1; a < actions.size(); ++a) {
-      if (problems.ChecksOf(a).empty()) continue;
-      Add(TaskKind::kDefined, 0, a, "defined." + (a == 0 ? "init" : actions[a]), problems.Defined(a));
-    }
-    Add(TaskKind::kSomeInitial, 0, 0, "sanity.initially", problems.SomeInitialState());
-    for (size_t a = 1; a < actions.size(); ++a) {
-      Add(TaskKind::kSomeValues, 0, a, "sanity.values." + actions[a], problems.SomeValues(a));
-      Add(TaskKind::kSomeEnabled, 0, a, "sanity.enabled." + actions[a], problems.SomeEnabled(a));
-    }
-    for (size_t p = 0; p < problems.promises().size(); ++p) {
-      Add(TaskKind::kSomeCondition, p, 0, "sanity.condition", problems.SomePromise(p, false));
-      Add(TaskKind::kSomePromise, p, 0, "sanity.promise", problems.SomePromise(p, true));
-      Add(TaskKind::kNow, p, 0, "sanity.now", problems.PromiseNow(p));
-    }
-    for (const Task& task : tasks_) report_.obligations += task.IsObligation() ? 1 : 0;
-  }
-
-  void WriteFiles() {
-    if (options_.smt_out.empty()) return;
-    for (const Task& task : tasks_) {
-      if (!task.IsObligation()) continue;
-      std::vector<expr::SmtAssertion> assertions;
-      for (const solve::Assertion& a : task.problem.query.assertions) assertions.push_back({a.formula, a.group});
-      const auto written = base::WriteFileAtomically(options_.smt_out / (task.name + ".smt2"),
-                                                     "; unsatisfiable if and only if the obligation holds\n" + expr::ToSmtLib(arena_, assertions));
-      if (!written.ok()) {
-        report_.problems.push_back(fmt::format("{}: {}", (options_.smt_out / (task.name + ".smt2")).string(), written.error().message));
-        return;
-      }
-    }
-  }
-
-  // Round 0 asks everything, round 1 what is undecided.
-  void Solve(int round) {
-    std::vector<Task*> todo;
+  std::vector<Task*> Undecided() {
+    std::vector<Task*> result;
     for (Task& task : tasks_) {
-      if (round == 0 || task.Undecided()) todo.push_back(&task);
+      if (task.IsObligation() && !task.Proved() && !options_.stop.cancelled()) result.push_back(&task);
     }
+    return result;
+  }
+
+  void Solve(const std::vector<Task*>& todo, Effort effort) {
     std::mutex mutex;
     size_t done = 0;
     base::ParallelFor(todo.size(), options_.jobs, [&](size_t i) {
       Task& task = *todo[i];
+      if (options_.stop.StopRequested()) {
+        task.answer = solve::Unknown{"interrupted"};
+        return;
+      }
       const auto start = Clock::now();
-      solve::Budget budget{options_.timeout, true};
-      // A sanity check that takes long is no reason to wait: it can only warn.
-      if (!task.IsObligation()) budget.time = std::min(budget.time, std::chrono::milliseconds(2000));
-      task.answer = options_.solver->Check(task.problem.query, budget, options_.stop);
-      if (round == 1 && std::holds_alternative<solve::Unknown>(task.answer) && !options_.stop.StopRequested()) {
-        // The instances were too many or too hard: let the solver choose its own.
-        solve::Query whole = task.problem.query;
-        whole.assertions = task.problem.assertions;
-        solve::Answer second = options_.solver->Check(whole, budget, options_.stop);
-        if (std::holds_alternative<solve::Unsat>(second)) task.answer = std::move(second);
-      }
+      expr::Arena arena;
+      diag::Diagnostics ignored;
+      Problems problems(arena, model_, {options_.robots, false}, ignored);
+      const Problem problem = StateTask(task, problems, effort);
+      Ask(task, problem, effort);
       task.seconds += std::chrono::duration<double>(Clock::now() - start).count();
+      // The question that decided, or the last one.
+      const bool last = task.Proved() || effort == Effort::kMost;
       std::optional<solve::Answer> other;
-      if (options_.cross_check != nullptr && task.IsObligation() && (round == 1 || !task.Undecided())) {
-        other = options_.cross_check->Check(task.problem.query, budget, options_.stop);
+      if (options_.cross_check != nullptr && task.IsObligation() && last) {
+        other = options_.cross_check->Check(problem.query, {options_.timeout, false}, options_.stop);
       }
+      if (!options_.smt_out.empty() && task.IsObligation() && last) WriteFile(task, problem, mutex);
       const std::scoped_lock lock(mutex);
       if (other) Compare(task, *other);
       ++done;
       if (options_.progress) options_.progress(done, todo.size(), task.name);
     });
+  }
+
+  // An invariant that other invariants imply needs no induction of its own. The premises are proved by induction, so
+  // the argument is not circular: at each moment first they hold, then what follows from them.
+  void TryConsequences() {
+    std::vector<size_t> premises;
+    for (const Task& task : tasks_) {
+      if (task.kind == TaskKind::kRound && task.Proved()) premises.push_back(task.subject);
+    }
+    std::vector<Task> attempts;
+    for (const Task* task : Undecided()) {
+      if (task->kind != TaskKind::kRound) continue;
+      attempts.push_back({TaskKind::kFollows, task->subject, 0, task->name, solve::Unknown{"not asked"}, task->seconds, premises});
+    }
+    for (const Effort effort : {Effort::kFew, Effort::kMore}) {
+      std::vector<Task*> todo;
+      for (Task& attempt : attempts) {
+        if (!attempt.Proved()) todo.push_back(&attempt);
+      }
+      Solve(todo, effort);
+    }
+    for (Task& attempt : attempts) {
+      if (!attempt.Proved()) continue;
+      for (Task& task : tasks_) {
+        if (task.kind != TaskKind::kRound || task.subject != attempt.subject) continue;
+        task.answer = attempt.answer;
+        task.seconds = attempt.seconds;
+      }
+    }
+  }
+
+  void Ask(Task& task, const Problem& problem, Effort effort) const {
+    solve::Budget budget{options_.timeout, true};
+    // A sanity check that takes long is no reason to wait: it can only warn.
+    if (!task.IsObligation()) budget.time = std::min(budget.time, std::chrono::milliseconds(2000));
+    task.answer = options_.solver->Check(problem.query, budget, options_.stop);
+    if (effort != Effort::kMost || !std::holds_alternative<solve::Unknown>(task.answer)) return;
+    // The instances were too many or too hard: let the solver choose its own.
+    solve::Query whole = problem.query;
+    whole.assertions = problem.assertions;
+    solve::Answer second = options_.solver->Check(whole, budget, options_.stop);
+    if (std::holds_alternative<solve::Unsat>(second)) task.answer = std::move(second);
+  }
+
+  void WriteFile(const Task& task, const Problem& problem, std::mutex& mutex) {
+    std::vector<expr::SmtAssertion> assertions;
+    for (const solve::Assertion& a : problem.query.assertions) assertions.push_back({a.formula, a.group});
+    const std::filesystem::path path = options_.smt_out / (task.name + ".smt2");
+    const auto written = base::WriteFileAtomically(
+        path, "; unsatisfiable if the obligation holds\n" + expr::ToSmtLib(*problem.query.arena, assertions));
+    if (written.ok()) return;
+    const std::scoped_lock lock(mutex);
+    report_.problems.push_back(fmt::format("{}: {}", path.string(), written.error().message));
   }
 
   void Compare(const Task& task, const solve::Answer& other) {
@@ -151,8 +150,10 @@ class Prover {
     if (task.answer.index() == other.index()) return;
     report_.disagreement = true;
     const auto word = [](const solve::Answer& a) { return std::holds_alternative<solve::Unsat>(a) ? "unsat" : "sat"; };
-    diagnostics_.Report(diag::Kind::kKoordDisagreement, {}, fmt::format("{} says {} and {} says {} of `{}`", options_.solver->name(), word(task.answer),
-                                                                    options_.cross_check->name(), word(other), task.name))
+    diagnostics_
+        .Report(diag::Kind::kKoordDisagreement, {},
+                fmt::format("{} says {} and {} says {} of `{}`", options_.solver->name(), word(task.answer),
+                            options_.cross_check->name(), word(other), task.name))
         .Help("one of the solvers is wrong: `--smt-out DIR` writes the question");
   }
 
@@ -177,6 +178,11 @@ class Prover {
       if (task.kind == TaskKind::kInitially) report_.rows[task.subject].cells.push_back(MakeCell(task, "initially"));
       if (task.kind == TaskKind::kStep) report_.rows[task.subject].cells.push_back(MakeCell(task, actions[task.action]));
       if (task.kind == TaskKind::kDefined) defined.cells.push_back(MakeCell(task, task.action == 0 ? "init" : actions[task.action]));
+      if (task.kind != TaskKind::kRound) continue;
+      for (const size_t a : Columns(problems)) {
+        report_.rows[task.subject].cells.push_back(MakeCell(task, actions[a]));
+        report_.rows[task.subject].cells.back().seconds /= static_cast<double>(actions.size());
+      }
     }
     if (!defined.cells.empty()) report_.rows.push_back(std::move(defined));
   }
@@ -186,8 +192,11 @@ class Prover {
     const std::string& action = problems.round().actions()[task.action];
     switch (task.kind) {
       case TaskKind::kInitially:
+      case TaskKind::kRound:
       case TaskKind::kStep:
-      case TaskKind::kDefined: return;
+      case TaskKind::kFollows:
+      case TaskKind::kDefined:
+      case TaskKind::kSomeCondition: return;
       case TaskKind::kSomeInitial:
         if (unsat != nullptr) reporter.Contradiction("no initial state is possible", unsat->core);
         return;
@@ -197,10 +206,14 @@ class Prover {
       case TaskKind::kSomeEnabled:
         if (unsat != nullptr && !report_.contradiction) reporter.NeverEnabled(task.action, unsat->core);
         return;
-      case TaskKind::kSomeCondition: condition_possible_ = unsat == nullptr; return;
-      case TaskKind::kSomePromise:
-        if (unsat != nullptr && condition_possible_) reporter.Contradiction("no controller can keep this promise", unsat->core);
+      case TaskKind::kSomePromise: {
+        if (unsat == nullptr) return;
+        // A promise whose condition is never true promises nothing.
+        Task condition{TaskKind::kSomeCondition, task.subject, 0, "sanity.condition", solve::Unknown{"not asked"}, 0, {}};
+        Solve({&condition}, Effort::kFew);
+        if (!condition.Proved()) reporter.Contradiction("no controller can keep this promise", unsat->core);
         return;
+      }
       case TaskKind::kNow:
         if (std::holds_alternative<solve::Sat>(task.answer)) not_now_.push_back(task.subject);
         return;
@@ -235,10 +248,8 @@ class Prover {
   const Model& model_;
   const ProveOptions& options_;
   diag::Diagnostics& diagnostics_;
-  expr::Arena arena_;
   std::vector<Task> tasks_;
   std::vector<size_t> not_now_;
-  bool condition_possible_ = true;
   Report report_;
 };
 

@@ -78,9 +78,7 @@ const Translator::SortInfo& Translator::Sort(expr::SortId id) {
 }
 
 ::z3::expr Translator::operator()(TermId root) {
-  std::unordered_set<TermId> seen;
-  for (const auto& [t, _] : terms_) seen.insert(t);
-  expr::VisitPostorder(arena_, root, seen, [&](TermId t) { terms_.emplace(t, Build(t, Args(t))); });
+  expr::VisitPostorder(arena_, root, seen_, [&](TermId t) { terms_.emplace(t, Build(t, Args(t))); });
   return terms_.at(root);
 }
 

@@ -36,6 +36,7 @@ class Translator {
   ::z3::context& context_;
   std::unordered_map<expr::SortId, SortInfo> sorts_;
   std::unordered_map<expr::SymbolId, ::z3::func_decl> functions_;
+  std::unordered_set<expr::TermId> seen_;
   std::unordered_map<expr::TermId, ::z3::expr> terms_;
 };
 

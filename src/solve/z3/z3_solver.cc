@@ -43,10 +43,10 @@ class Watchdog {
 
 Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop) {
   ::z3::context context;
-  ::z3::solver solver(context);
+  ::z3::solver solver(context, ::z3::solver::simple());
   ::z3::params parameters(context);
   parameters.set("timeout", static_cast<unsigned>(std::max<int64_t>(1, budget.time.count())));
-  parameters.set("core.minimize", budget.core);
+  parameters.set("core.minimize", false);
   solver.set(parameters);
   Translator translate(*query.arena, context);
   std::map<std::string, ::z3::expr> literals;

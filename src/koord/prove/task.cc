@@ -1,0 +1,78 @@
+#include "koord/prove/task.h"
+
+#include "base/check.h"
+
+namespace rondo::koord {
+
+std::vector<size_t> Columns(Problems& problems) {
+  std::vector<size_t> result;
+  for (size_t a = 1; a < problems.columns(); ++a) result.push_back(a);
+  result.push_back(0);
+  return result;
+}
+
+std::vector<Task> ListTasks(Problems& problems) {
+  const std::vector<std::string>& actions = problems.round().actions();
+  std::vector<Task> tasks;
+  const auto add = [&](TaskKind kind, size_t subject, size_t action, std::string name) {
+    tasks.push_back({kind, subject, action, std::move(name), solve::Unknown{"not asked"}, 0, {}});
+  };
+  for (size_t i = 0; i < problems.theory().invariants(); ++i) {
+    const std::string name = problems.theory().InvariantName(i);
+    add(TaskKind::kInitially, i, 0, name + ".initially");
+    add(TaskKind::kRound, i, 0, name + ".round");
+  }
+  for (size_t a = problems.has_init() ? 0 : 1; a < actions.size(); ++a) {
+    if (!problems.ChecksOf(a).empty()) add(TaskKind::kDefined, 0, a, "defined." + (a == 0 ? "init" : actions[a]));
+  }
+  add(TaskKind::kSomeInitial, 0, 0, "sanity.initially");
+  for (size_t a = 1; a < actions.size(); ++a) {
+    add(TaskKind::kSomeValues, 0, a, "sanity.values." + actions[a]);
+    add(TaskKind::kSomeEnabled, 0, a, "sanity.enabled." + actions[a]);
+  }
+  for (size_t p = 0; p < problems.promises().size(); ++p) {
+    add(TaskKind::kSomePromise, p, 0, "sanity.promise");
+    add(TaskKind::kNow, p, 0, "sanity.now");
+  }
+  return tasks;
+}
+
+std::vector<Task> SplitRounds(std::vector<Task> tasks, Problems& problems) {
+  std::vector<Task> result;
+  for (Task& task : tasks) {
+    if (task.kind != TaskKind::kRound || task.Proved()) {
+      result.push_back(std::move(task));
+      continue;
+    }
+    for (const size_t a : Columns(problems)) {
+      const std::string name = problems.theory().InvariantName(task.subject) + "." + problems.round().actions()[a];
+      result.push_back({TaskKind::kStep, task.subject, a, name, solve::Unknown{"not asked"}, 0, {}});
+    }
+  }
+  return result;
+}
+
+Problem StateTask(const Task& task, Problems& problems, Effort effort) {
+  switch (effort) {
+    case Effort::kFew: problems.limits = {.rounds = 3}; break;
+    case Effort::kMore: problems.limits = {.rounds = 5}; break;
+    case Effort::kMost: problems.limits = {.mode = solve::InstantiationMode::kPlaces, .rounds = 4}; break;
+  }
+  switch (task.kind) {
+    case TaskKind::kInitially: return problems.Initially(task.subject);
+    case TaskKind::kRound: return problems.Step(task.subject, std::nullopt, false);
+    case TaskKind::kStep: return problems.Step(task.subject, task.action, false);
+    case TaskKind::kFollows: return problems.Follows(task.subject, task.premises);
+    case TaskKind::kDefined: return problems.Defined(task.action);
+    case TaskKind::kSomeInitial: return problems.SomeInitialState();
+    case TaskKind::kSomeValues: return problems.SomeValues(task.action);
+    case TaskKind::kSomeEnabled: return problems.SomeEnabled(task.action);
+    case TaskKind::kSomeCondition: return problems.SomePromise(task.subject, false);
+    case TaskKind::kSomePromise: return problems.SomePromise(task.subject, true);
+    case TaskKind::kNow: return problems.PromiseNow(task.subject);
+  }
+  CHECK(false);
+  return {};
+}
+
+}  // namespace rondo::koord
