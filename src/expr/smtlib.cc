@@ -224,7 +224,7 @@ std::string ToSmtLib(const Arena& arena, std::span<const SmtAssertion> assertion
     VisitPostorder(arena, assertion.formula, local, [&](TermId t) { needed.push_back(t); });
     for (const TermId t : needed) {
       if (arena.args(t).empty() || uses[t] < 2 || arena.IsOpen(t) || !defined.insert(t).second) continue;
-      const std::string name = fmt::format(".t{}", serial++);
+      const std::string name = fmt::format("$t{}", serial++);
       body += fmt::format("(define-fun {} () {} {})\n", name, printer.SortName(arena.sort_of(t)), printer.Print(t, true));
       printer.Define(t, name);
     }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "expr/substitute.h"
 #include "koord/prove/text_table.h"
 
 namespace rondo::koord {
@@ -27,16 +28,16 @@ void Mentioned(const Model& model, ExprId id, std::vector<bool>& seen) {
 /// Reads a model of a spelled-out problem and tells it as a story.
 class Storyteller {
  public:
-  Storyteller(const Model& model, Problems& problems, expr::Arena& arena, size_t invariant, int64_t robots)
-      : model_(model), problems_(problems), arena_(arena), invariant_(invariant), robots_(robots) {}
+  Storyteller(const Model& model, Problems& problems, expr::Arena& arena, size_t invariant, std::vector<TermId> robots)
+      : model_(model), problems_(problems), arena_(arena), invariant_(invariant), robots_(std::move(robots)) {}
 
   std::vector<TermId> Wanted(bool initial) {
-    ForEachValue(initial, [&](const std::string&, size_t, int64_t, TermId term) { wanted_.push_back(term); });
+    ForEachValue(initial, [&](size_t, bool, TermId, TermId term) { wanted_.push_back(term); });
     Round& round = problems_.round();
     if (!initial) {
       wanted_.push_back(round.moved());
-      for (int64_t r = 0; r < robots_; ++r) {
-        const TermId robot = arena_.IntNumber(r);
+      for (const TermId robot : robots_) {
+        wanted_.push_back(robot);
         for (size_t a = 0; a < round.actions().size(); ++a) {
           wanted_.push_back(round.Acts(robot, a));
           for (const ReadRecord& read : round.EffectOf(a, robot).reads) {
@@ -56,11 +57,14 @@ class Storyteller {
     TextTable table;
     Round& round = problems_.round();
     if (!initial) {
-      for (int64_t r = 0; r < robots_; ++r) {
-        const TermId robot = arena_.IntNumber(r);
+      std::vector<std::string> told;
+      for (const TermId robot : robots_) {
+        const std::string number = Show(sat, robot);
+        if (std::find(told.begin(), told.end(), number) != told.end()) continue;
+        told.push_back(number);
         for (size_t a = 0; a < round.actions().size(); ++a) {
           if (!IsTrue(sat, round.Acts(robot, a))) continue;
-          table.Add({fmt::format("robot {}", r), round.actions()[a], Reads(sat, robot, a), Writes(sat, r)});
+          table.Add({fmt::format("robot {}", number), round.actions()[a], Reads(sat, robot, a), Writes(sat, robot)});
         }
       }
     }
@@ -108,10 +112,9 @@ class Storyteller {
     return parts.empty() ? "" : fmt::format("read {}", fmt::join(parts, ", "));
   }
 
-  std::string Writes(const solve::Sat& sat, int64_t r) {
+  std::string Writes(const solve::Sat& sat, TermId robot) {
     std::vector<std::string> parts;
     Round& round = problems_.round();
-    const TermId robot = arena_.IntNumber(r);
     for (size_t a = 1; a < round.actions().size(); ++a) {
       if (!IsTrue(sat, round.Acts(robot, a))) continue;
       for (size_t v = 0; v < model_.variables.size(); ++v) {
@@ -123,7 +126,7 @@ class Storyteller {
         const std::string before = Show(sat, arena_.Select(round.start().value[v], robot));
         const std::string after = Show(sat, arena_.Select(round.end().value[v], robot));
         if (before == after) continue;
-        const std::string index = variable.kind == VariableKind::kAllread ? fmt::format("[{}]", r) : "";
+        const std::string index = variable.kind == VariableKind::kAllread ? fmt::format("[{}]", Show(sat, robot)) : "";
         parts.push_back(fmt::format("{}{} = {}", variable.name, index, after));
       }
     }
@@ -136,8 +139,10 @@ class Storyteller {
     Mentioned(model_, model_.invariants[invariant_]->body, mentioned);
     std::map<std::string, std::string> before;
     std::vector<std::tuple<std::string, size_t, std::string, std::string>> lines;
-    ForEachValue(initial, [&](const std::string& name, size_t v, int64_t when, TermId term) {
-      if (when == 0) {
+    ForEachValue(initial, [&](size_t v, bool end, TermId robot, TermId term) {
+      const std::string name = NameOf(v, robot.valid() ? Show(sat, robot) : "");
+      if (end && std::any_of(lines.begin(), lines.end(), [&](const auto& line) { return std::get<0>(line) == name; })) return;
+      if (!end) {
         before[name] = Show(sat, term);
         if (initial || model_.variables[v].kind == VariableKind::kParam) lines.emplace_back(name, v, before[name], before[name]);
       } else {
@@ -152,24 +157,28 @@ class Storyteller {
     }
   }
 
-  // when: 0 at the start, 1 at the end.
-  void ForEachValue(bool initial, const std::function<void(const std::string&, size_t, int64_t, TermId)>& visit) {
+  std::string NameOf(size_t v, const std::string& robot) const {
+    const Variable& variable = model_.variables[v];
+    if (robot.empty()) return variable.name;
+    if (variable.module.empty()) return fmt::format("{}[{}]", variable.name, robot);
+    return fmt::format("{}[{}]{}", variable.module, robot, variable.name.substr(variable.module.size()));
+  }
+
+  // (variable, at the end?, robot or none, value)
+  void ForEachValue(bool initial, const std::function<void(size_t, bool, TermId, TermId)>& visit) {
     Round& round = problems_.round();
     for (size_t v = 0; v < model_.variables.size(); ++v) {
       const Variable& variable = model_.variables[v];
       if (variable.function >= 0) continue;
-      const bool array = model_.types.Is(variable.type, lang::TypeKind::kArray);
       if (!variable.PerRobot()) {
-        if (array) continue;
-        visit(variable.name, v, 0, round.start().value[v]);
-        if (!initial && variable.kind != VariableKind::kParam) visit(variable.name, v, 1, round.end().value[v]);
+        if (model_.types.Is(variable.type, lang::TypeKind::kArray)) continue;
+        visit(v, false, {}, round.start().value[v]);
+        if (!initial && variable.kind != VariableKind::kParam) visit(v, true, {}, round.end().value[v]);
         continue;
       }
-      for (int64_t r = 0; r < robots_; ++r) {
-        const std::string name = variable.module.empty() ? fmt::format("{}[{}]", variable.name, r)
-                                                         : fmt::format("{}[{}]{}", variable.module, r, variable.name.substr(variable.module.size()));
-        visit(name, v, 0, arena_.Select(round.start().value[v], arena_.IntNumber(r)));
-        if (!initial) visit(name, v, 1, arena_.Select(round.end().value[v], arena_.IntNumber(r)));
+      for (const TermId robot : robots_) {
+        visit(v, false, robot, arena_.Select(round.start().value[v], robot));
+        if (!initial) visit(v, true, robot, arena_.Select(round.end().value[v], robot));
       }
     }
   }
@@ -178,19 +187,19 @@ class Storyteller {
   Problems& problems_;
   expr::Arena& arena_;
   size_t invariant_;
-  int64_t robots_;
+  std::vector<TermId> robots_;
   std::vector<TermId> wanted_;
 };
 
 // Satisfiable with everything taken into account, or nothing.
-std::optional<solve::Sat> Confirm(const Problem& problem, std::vector<TermId> wanted, const solve::Solver& solver,
-                                  solve::Budget budget, const base::StopToken& stop) {
+std::optional<solve::Sat> Confirm(const Problem& problem, std::vector<TermId> wanted, bool complete,
+                                  const solve::Solver& solver, solve::Budget budget, const base::StopToken& stop) {
   budget.core = false;
   solve::Query query = problem.query;
   query.wanted = std::move(wanted);
   solve::Answer answer = solver.Check(query, budget, stop);
   if (!std::holds_alternative<solve::Sat>(answer)) return std::nullopt;
-  if (!problem.complete) {
+  if (!complete) {
     // Some quantifiers were only instantiated: ask again with all of them.
     query.assertions.insert(query.assertions.end(), problem.assertions.begin(), problem.assertions.end());
     answer = solver.Check(query, budget, stop);
@@ -199,38 +208,62 @@ std::optional<solve::Sat> Confirm(const Problem& problem, std::vector<TermId> wa
   return std::get<solve::Sat>(std::move(answer));
 }
 
+// Is every quantified assertion of the form "for each robot r, p", where r occurs in p only to pick robot r's values? Then
+// robots that the problem does not mention can be copies of one that it does: they satisfy p because that one does, and
+// skip. (Not if they owe something to a controller assumption: nothing says that they can keep it by standing still.)
+bool OthersCanBeCopies(const expr::Arena& arena, const Problem& problem, Problems& problems) {
+  if (problem.participants.empty() || !problems.promises().empty()) return false;
+  return std::all_of(problem.assertions.begin(), problem.assertions.end(), [&](const solve::Assertion& a) {
+    if (!arena.HasQuantifier(a.formula)) return true;
+    if (arena.op(a.formula) != expr::Op::kForall || arena.args(a.formula).size() != 2) return false;
+    const TermId robot = arena.arg(a.formula, 0);
+    const TermId body = arena.arg(a.formula, 1);
+    if (arena.HasQuantifier(body) || arena.sort_of(robot) != arena.Int()) return false;
+    // Its range is the only other place in which the robot may occur.
+    const TermId range = problems.vocabulary().IsRobot(robot);
+    std::unordered_set<TermId> seen;
+    for (const TermId part : arena.args(range)) seen.insert(part);
+    bool local = arena.op(range) == expr::Op::kAnd;
+    expr::VisitPostorder(arena, body, seen, [&](TermId t) {
+      const auto args = arena.args(t);
+      for (size_t i = 0; i < args.size(); ++i) local = local && (args[i] != robot || (arena.op(t) == expr::Op::kSelect && i == 1));
+    });
+    return local;
+  });
+}
+
+// A team of `n`, every quantifier over robots spelled out; or, for a large team, only those who matter.
+std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::optional<size_t> action, int64_t n, bool expand,
+                               const solve::Solver& solver, const solve::Budget& budget, const base::StopToken& stop) {
+  expr::Arena arena;
+  diag::Diagnostics ignored;  // the symbolic run reported the same
+  Problems problems(arena, model, {n, expand}, ignored);
+  problems.limits.rounds = 5;
+  const bool initial = !action.has_value();
+  const auto attempt = [&](const Problem& problem, bool reachable) -> std::optional<Witness> {
+    Storyteller storyteller(model, problems, arena, invariant, problem.participants);
+    const bool complete = problem.complete || (!expand && OthersCanBeCopies(arena, problem, problems));
+    const auto sat = Confirm(problem, storyteller.Wanted(initial), complete, solver, budget, stop);
+    if (!sat) return std::nullopt;
+    return Witness{reachable, !initial && storyteller.Moved(*sat), n, storyteller.Tell(*sat, initial)};
+  };
+  if (initial) return attempt(problems.Initially(invariant), true);
+  auto witness = attempt(problems.Step(invariant, *action, false), false);
+  if (witness && !problems.has_init()) {
+    if (auto real = attempt(problems.Step(invariant, *action, true), true)) return real;
+  }
+  return witness;
+}
+
 }  // namespace
 
 std::optional<Witness> FindWitness(const Model& model, size_t invariant, std::optional<size_t> action,
                                    std::optional<int64_t> robots, const solve::Solver& solver,
                                    const solve::Budget& budget, const base::StopToken& stop) {
   static constexpr int64_t kLargest = 8;
-  if (robots && *robots > kLargest) return std::nullopt;
-  const int64_t first = robots.value_or(1);
-  const int64_t last = robots.value_or(4);
-  for (int64_t n = first; n <= last && !stop.StopRequested(); ++n) {
-    expr::Arena arena;
-    diag::Diagnostics ignored;  // the symbolic run reported the same
-    Problems problems(arena, model, {n, true}, ignored);
-    Storyteller storyteller(model, problems, arena, invariant, n);
-    const std::vector<TermId> wanted = storyteller.Wanted(!action.has_value());
-    const auto attempt = [&](const Problem& problem, bool reachable) -> std::optional<Witness> {
-      const auto sat = Confirm(problem, wanted, solver, budget, stop);
-      if (!sat) return std::nullopt;
-      const bool initial = !action.has_value();
-      return Witness{reachable, !initial && storyteller.Moved(*sat), n, storyteller.Tell(*sat, initial)};
-    };
-    if (!action) {
-      if (auto witness = attempt(problems.Initially(invariant), true)) return witness;
-      continue;
-    }
-    const Problem from_anywhere = problems.Step(invariant, *action, false);
-    auto witness = attempt(from_anywhere, false);
-    if (!witness) continue;
-    if (!problems.has_init()) {
-      if (auto real = attempt(problems.Step(invariant, *action, true), true)) return real;
-    }
-    return witness;
+  if (robots && *robots > kLargest) return TryTeam(model, invariant, action, *robots, false, solver, budget, stop);
+  for (int64_t n = robots.value_or(1); n <= robots.value_or(4) && !stop.StopRequested(); ++n) {
+    if (auto witness = TryTeam(model, invariant, action, n, true, solver, budget, stop)) return witness;
   }
   return std::nullopt;
 }
