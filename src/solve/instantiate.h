@@ -19,7 +19,7 @@ struct InstantiationLimits {
   InstantiationMode mode = InstantiationMode::kTriggers;
   int rounds = 3;                ///< how often instances may give rise to further instances
   size_t per_quantifier = 4000;  ///< instances of one quantifier
-  size_t total = 20000;
+  size_t total = 8000;
 };
 
 /// Quantifier-free assertions that follow from `assertions` (so that unsatisfiability carries over):

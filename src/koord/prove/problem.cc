@@ -72,7 +72,6 @@ Problem Problems::Ground(std::vector<Assertion> assertions, std::vector<TermId> 
   const bool dist = vocabulary_.uses_dist();
   if (background_.empty() || dist != background_dist_) {
     background_ = theory_.Background();
-    if (options_.expand && vocabulary_.uses_dist()) background_.push_back({vocabulary_.DistDefinition(), ""});
     background_dist_ = vocabulary_.uses_dist();
   }
   Append(assertions, background_);

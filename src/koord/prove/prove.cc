@@ -34,10 +34,18 @@ class Prover {
     TryConsequences();
     Solve(Undecided(), Effort::kMore);
     tasks_ = SplitRounds(std::move(tasks_), problems);
-    Solve(Undecided(), Effort::kMost);
+    Solve(Undecided(), Effort::kMore);
+    FindWitnesses();
+    // Of what is neither proved nor refuted by now, one more attempt, with all the instances that there are.
+    std::vector<Task*> rest;
+    for (Task* task : Undecided()) {
+      const auto it = witnesses_.find(task->subject);
+      if (task->kind == TaskKind::kDefined || it == witnesses_.end() || !it->second.confirmed) rest.push_back(task);
+    }
+    Solve(rest, Effort::kMost);
     report_.interrupted = options_.stop.cancelled();
     MakeRows(problems);
-    Reporter reporter(sources_, model_, options_, problems, diagnostics_, report_);
+    Reporter reporter(sources_, model_, options_, problems, diagnostics_, report_, witnesses_);
     for (Task& task : tasks_) Sanity(task, problems, reporter);
     reporter.Failures();
     Conclude(problems, reporter);
@@ -75,7 +83,7 @@ class Prover {
       Ask(task, problem, effort);
       task.seconds += std::chrono::duration<double>(Clock::now() - start).count();
       // The question that decided, or the last one.
-      const bool last = task.Proved() || effort == Effort::kMost;
+      const bool last = task.Proved() || effort == Effort::kMore;
       std::optional<solve::Answer> other;
       if (options_.cross_check != nullptr && task.IsObligation() && last) {
         other = options_.cross_check->Check(problem.query, {options_.timeout, false}, options_.stop);
@@ -117,10 +125,33 @@ class Prover {
     }
   }
 
+  // For each invariant, of the first obligation that is not proved.
+  void FindWitnesses() {
+    std::vector<Task*> first;
+    std::set<size_t> seen;
+    for (Task* task : Undecided()) {
+      if (task->kind != TaskKind::kDefined && seen.insert(task->subject).second) first.push_back(task);
+    }
+    std::mutex mutex;
+    base::ParallelFor(first.size(), options_.jobs, [&](size_t i) {
+      const Task& task = *first[i];
+      if (options_.progress) {
+        const std::scoped_lock lock(mutex);
+        options_.progress(i, first.size(), "looking for a counterexample of " + task.name);
+      }
+      const solve::Budget budget{std::min(options_.timeout, std::chrono::milliseconds(1000)), false};
+      const auto action = task.kind == TaskKind::kInitially ? std::nullopt : std::optional(task.action);
+      auto witness = FindWitness(model_, task.subject, action, options_.robots, *options_.solver, budget, options_.stop);
+      const std::scoped_lock lock(mutex);
+      if (witness) witnesses_.emplace(task.subject, std::move(*witness));
+    });
+  }
+
   void Ask(Task& task, const Problem& problem, Effort effort) const {
     solve::Budget budget{options_.timeout, true};
     // A sanity check that takes long is no reason to wait: it can only warn.
     if (!task.IsObligation()) budget.time = std::min(budget.time, std::chrono::milliseconds(2000));
+    if (effort == Effort::kMost) budget.time = std::min(budget.time, options_.timeout / 4);
     task.answer = options_.solver->Check(problem.query, budget, options_.stop);
     if (effort != Effort::kMost || !std::holds_alternative<solve::Unknown>(task.answer)) return;
     // The instances were too many or too hard: let the solver choose its own.
@@ -249,6 +280,7 @@ class Prover {
   const ProveOptions& options_;
   diag::Diagnostics& diagnostics_;
   std::vector<Task> tasks_;
+  std::map<size_t, Witness> witnesses_;  // by invariant
   std::vector<size_t> not_now_;
   Report report_;
 };

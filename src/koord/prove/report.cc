@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "koord/prove/witness.h"
-
 namespace rondo::koord {
 
 using diag::Kind;
@@ -81,68 +79,68 @@ std::string Reporter::Scope() const {
 }
 
 void Reporter::Failures() {
-  const bool counts = !report_.contradiction && !report_.interrupted;
+  if (report_.contradiction || report_.interrupted) return;
   for (size_t i = 0; i < report_.rows.size(); ++i) {
     Row& row = report_.rows[i];
-    const bool invariant = i < model_.invariants.size();
-    bool told = false;  // one witness for each invariant
-    for (Cell& cell : row.cells) {
-      if (cell.outcome == Outcome::kProved) continue;
-      if (told || !counts) continue;
-      told = true;
-      if (invariant) {
-        FailedInvariant(i, cell, cell.column == "initially" ? std::nullopt : std::optional(ActionOf(cell.column)));
-      } else {
-        FailedDefinedness(cell, cell.column == "init" ? 0 : ActionOf(cell.column));
-      }
-    }
-    // An obligation that was not looked at more closely is not established.
-    for (Cell& cell : row.cells) {
-      if (cell.outcome == Outcome::kFailed && row.verdict == Verdict::kUnknown) {
-        cell.outcome = Outcome::kUnknown;
-        if (cell.reason.empty()) cell.reason = "a possible counterexample could not be confirmed";
-      }
+    const auto open = std::find_if(row.cells.begin(), row.cells.end(), [](const Cell& c) { return c.outcome != Outcome::kProved; });
+    if (open == row.cells.end()) continue;
+    if (i < model_.invariants.size()) {
+      FailedInvariant(i);
+    } else {
+      FailedDefinedness(*open, open->column == "init" ? 0 : ActionOf(open->column));
     }
   }
 }
 
-void Reporter::FailedInvariant(size_t i, Cell& cell, std::optional<size_t> action) {
+// Only the obligation with a witness has failed; the others of its row are as yet undecided.
+void Reporter::FailedInvariant(size_t i) {
   Row& row = report_.rows[i];
   const InvariantDef& def = *model_.invariants[i];
-  const Span required = model_.program->exprs[def.body].span;
-  const solve::Budget budget{std::min(options_.timeout, std::chrono::milliseconds(3000)), false};
-  const auto witness = FindWitness(model_, i, action, options_.robots, *options_.solver, budget, options_.stop);
-  if (!witness) {
-    Undecided(row, cell, required);
+  const auto it = witnesses_.find(i);
+  const bool confirmed = it != witnesses_.end() && it->second.confirmed;
+  for (Cell& cell : row.cells) {
+    if (cell.outcome == Outcome::kProved) continue;
+    const bool this_one = confirmed && cell.column == (it->second.action ? problems_.round().actions()[*it->second.action] : "initially");
+    cell.outcome = this_one ? Outcome::kFailed : Outcome::kUnknown;
+    if (!this_one && cell.reason.empty()) cell.reason = "a possible counterexample could not be confirmed";
+  }
+  if (confirmed) {
+    Told(row, def, it->second);
     return;
   }
-  cell.outcome = Outcome::kFailed;
-  const std::string size = fmt::format("N_sys = {}", witness->robots);
+  const auto open = std::find_if(row.cells.begin(), row.cells.end(), [](const Cell& c) { return c.outcome != Outcome::kProved; });
+  Undecided(row, *open, model_.program->exprs[def.body].span, it == witnesses_.end() ? nullptr : &it->second);
+}
+
+void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
+  const Span required = model_.program->exprs[def.body].span;
+  const std::string size = fmt::format("N_sys = {}", witness.robots);
+  const std::optional<size_t> action = witness.action;
   if (!action) {
     row.verdict = Verdict::kRefuted;
     diagnostics_.Report(Kind::kKoordRefuted, required, fmt::format("`{}` is false in an initial state", row.name))
         .Under("required here")
-        .Note(fmt::format("an initial state that the declarations and assumptions allow ({}):\n{}", size, witness->table))
+        .Note(fmt::format("an initial state that the declarations and assumptions allow ({}):\n{}", size, witness.table))
         .Help("give variables initial values, or state what holds at the start: `assume initially: ...`");
     return;
   }
-  row.verdict = witness->reachable ? Verdict::kRefuted : Verdict::kNotInductive;
-  const Kind kind = witness->reachable ? Kind::kKoordRefuted : Kind::kKoordNotInductive;
+  row.verdict = witness.reachable ? Verdict::kRefuted : Verdict::kNotInductive;
+  const Kind kind = witness.reachable ? Kind::kKoordRefuted : Kind::kKoordNotInductive;
   const std::string who = *action == 0 ? "the environment" : fmt::format("`{}`", model_.events[*action - 1]->name);
   const Span where = *action == 0 ? required : model_.events[*action - 1]->span;
-  auto& report = diagnostics_.Report(kind, where, witness->reachable ? fmt::format("{} violates `{}`", who, row.name)
-                                                                     : fmt::format("{} does not preserve `{}`", who, row.name));
+  auto& report = diagnostics_.Report(kind, where, witness.reachable ? fmt::format("{} violates `{}`", who, row.name)
+                                                                    : fmt::format("{} does not preserve `{}`", who, row.name));
   if (*action == 0) {
     report.Under("required at every moment");
   } else {
     report.At(required, "required here");
   }
   report.Note(fmt::format("one round that breaks it, from {} ({}):\n{}",
-                          witness->reachable ? "an initial state" : "a state that satisfies every invariant", size, witness->table));
-  if (!witness->reachable) report.Note("this state may be unreachable: the induction could not exclude it");
-  if (witness->environment) {
+                          witness.reachable ? "an initial state" : "a state that satisfies every invariant", size, witness.table));
+  if (!witness.reachable) report.Note("this state may be unreachable: the induction could not exclude it");
+  if (witness.environment) {
     report.Help("say what the controller guarantees: `assume M when ... always ...`");
-  } else if (!witness->reachable) {
+  } else if (!witness.reachable) {
     report.Help("add an invariant that excludes the state at the start of this round");
   }
 }
@@ -179,17 +177,21 @@ void Reporter::FailedDefinedness(Cell& cell, size_t action) {
       }
     }
   }
-  Undecided(row, cell, checks.front().span);
+  Undecided(row, cell, checks.front().span, nullptr);
 }
 
-void Reporter::Undecided(Row& row, const Cell& cell, Span span) {
+void Reporter::Undecided(Row& row, const Cell& cell, Span span, const Witness* candidate) {
   row.verdict = Verdict::kUnknown;
-  const bool candidate = cell.outcome == Outcome::kFailed;
   auto& report = diagnostics_.Report(Kind::kKoordUnknown, span, fmt::format("`{}` could not be decided {}", row.name, Scope()));
   report.Under(fmt::format("obligation `{}`", cell.column));
-  report.Note(candidate ? "there may be a counterexample, but none could be confirmed with 1 to 4 robots"
-                        : fmt::format("{}: {}", options_.solver->name(), cell.reason));
-  report.Help(candidate ? "state more of what the functions and ports guarantee, or try `--robots 3`" : "give it more time: `--timeout 60`");
+  if (candidate != nullptr) {
+    report.Note(fmt::format("a possible counterexample (N_sys = {}), not checked against every value that the functions may take:\n{}",
+                            candidate->robots, candidate->table));
+    report.Help("state more of what the functions and ports guarantee, if this cannot happen");
+  } else {
+    report.Note(fmt::format("{}: {}", options_.solver->name(), cell.reason));
+    report.Help("give it more time (`--timeout 60`) or fix the number of robots (`--robots 3`)");
+  }
 }
 
 // The largest set of invariants whose proofs use only members of the set.

@@ -111,17 +111,4 @@ std::vector<TermId> Vocabulary::Axioms() {
   return axioms;
 }
 
-TermId Vocabulary::DistDefinition() {
-  const SortId pos = SortOf(model_.types.pos());
-  const TermId p = arena_.FreshBound("p", pos);
-  const TermId q = arena_.FreshBound("q", pos);
-  const TermId d = arena_.Apply(Dist(), {p, q});
-  std::vector<TermId> squares;
-  for (uint32_t i = 0; i < 3; ++i) {
-    const TermId difference = arena_.Sub(arena_.Field(p, i), arena_.Field(q, i));
-    squares.push_back(arena_.Mul(difference, difference));
-  }
-  return arena_.Forall({p, q}, arena_.Eq(arena_.Mul(d, d), arena_.Add(std::move(squares))));
-}
-
 }  // namespace rondo::koord

@@ -33,6 +33,7 @@ class Vocabulary {
   /// The symbol of an external function; a callable port takes the robot first and has a version.
   expr::SymbolId Function(size_t function, const std::string& planner_suffix);
   expr::SymbolId Dist();
+  /// `dist` is known by axioms only, so a model may take a distance that is none.
   bool uses_dist() const { return uses_dist_; }
 
   /// Can a robot stop at all? If not, no state has to say that it has not.
@@ -45,8 +46,6 @@ class Vocabulary {
   TermId StringLiteral(const std::string& text);
   /// What is true of the vocabulary itself: N_sys >= 1, different literals are different, `dist` is a distance.
   std::vector<TermId> Axioms();
-  /// dist(p, q)^2 = |p - q|^2 for all p, q: nonlinear, needed only to find true counterexamples.
-  TermId DistDefinition();
 
   expr::Arena& arena() { return arena_; }
   const Model& model() const { return model_; }

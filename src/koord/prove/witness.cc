@@ -191,21 +191,26 @@ class Storyteller {
   std::vector<TermId> wanted_;
 };
 
-// Satisfiable with everything taken into account, or nothing.
-std::optional<solve::Sat> Confirm(const Problem& problem, std::vector<TermId> wanted, bool complete,
-                                  const solve::Solver& solver, solve::Budget budget, const base::StopToken& stop) {
+struct Candidate {
+  solve::Sat sat;
+  bool confirmed;
+};
+
+// Satisfiable with everything taken into account, or as far as the instances go, or nothing.
+std::optional<Candidate> Confirm(const Problem& problem, std::vector<TermId> wanted, bool complete,
+                                 const solve::Solver& solver, solve::Budget budget, const base::StopToken& stop) {
   budget.core = false;
   solve::Query query = problem.query;
   query.wanted = std::move(wanted);
   solve::Answer answer = solver.Check(query, budget, stop);
   if (!std::holds_alternative<solve::Sat>(answer)) return std::nullopt;
-  if (!complete) {
-    // Some quantifiers were only instantiated: ask again with all of them.
-    query.assertions.insert(query.assertions.end(), problem.assertions.begin(), problem.assertions.end());
-    answer = solver.Check(query, budget, stop);
-    if (!std::holds_alternative<solve::Sat>(answer)) return std::nullopt;
-  }
-  return std::get<solve::Sat>(std::move(answer));
+  if (complete) return Candidate{std::get<solve::Sat>(std::move(answer)), true};
+  // Some quantifiers were only instantiated: ask again with all of them.
+  query.assertions.insert(query.assertions.end(), problem.assertions.begin(), problem.assertions.end());
+  solve::Answer whole = solver.Check(query, budget, stop);
+  if (std::holds_alternative<solve::Unsat>(whole)) return std::nullopt;
+  const bool confirmed = std::holds_alternative<solve::Sat>(whole);
+  return Candidate{std::get<solve::Sat>(std::move(confirmed ? whole : answer)), confirmed};
 }
 
 // Is every quantified assertion of the form "for each robot r, p", where r occurs in p only to pick robot r's values? Then
@@ -243,14 +248,15 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::option
   const auto attempt = [&](const Problem& problem, bool reachable) -> std::optional<Witness> {
     Storyteller storyteller(model, problems, arena, invariant, problem.participants);
     const bool complete = problem.complete || (!expand && OthersCanBeCopies(arena, problem, problems));
-    const auto sat = Confirm(problem, storyteller.Wanted(initial), complete, solver, budget, stop);
-    if (!sat) return std::nullopt;
-    return Witness{reachable, !initial && storyteller.Moved(*sat), n, storyteller.Tell(*sat, initial)};
+    const auto found = Confirm(problem, storyteller.Wanted(initial), complete, solver, budget, stop);
+    if (!found) return std::nullopt;
+    return Witness{action, found->confirmed && !problems.uses_dist(), reachable, !initial && storyteller.Moved(found->sat), n, storyteller.Tell(found->sat, initial)};
   };
   if (initial) return attempt(problems.Initially(invariant), true);
   auto witness = attempt(problems.Step(invariant, *action, false), false);
-  if (witness && !problems.has_init()) {
-    if (auto real = attempt(problems.Step(invariant, *action, true), true)) return real;
+  if (witness && witness->confirmed && !problems.has_init()) {
+    auto real = attempt(problems.Step(invariant, *action, true), true);
+    if (real && real->confirmed) return real;
   }
   return witness;
 }
@@ -262,10 +268,17 @@ std::optional<Witness> FindWitness(const Model& model, size_t invariant, std::op
                                    const solve::Budget& budget, const base::StopToken& stop) {
   static constexpr int64_t kLargest = 8;
   if (robots && *robots > kLargest) return TryTeam(model, invariant, action, *robots, false, solver, budget, stop);
-  for (int64_t n = robots.value_or(1); n <= robots.value_or(4) && !stop.StopRequested(); ++n) {
-    if (auto witness = TryTeam(model, invariant, action, n, true, solver, budget, stop)) return witness;
+  std::optional<Witness> best;
+  int unconfirmed = 0;
+  for (int64_t n = robots.value_or(1); n <= robots.value_or(4) && unconfirmed < 2 && !stop.StopRequested(); ++n) {
+    auto witness = TryTeam(model, invariant, action, n, true, solver, budget, stop);
+    if (!witness) continue;
+    if (witness->confirmed) return witness;
+    // What could not be confirmed for two sizes will not be for a third: the functions are too much for the solver.
+    ++unconfirmed;
+    if (!best) best = std::move(witness);
   }
-  return std::nullopt;
+  return best;
 }
 
 }  // namespace rondo::koord

@@ -13,7 +13,8 @@
 namespace rondo::solve::z3 {
 namespace {
 
-// Interrupts the context when the token is cancelled. Z3 has no other way to be told.
+// Interrupts the context when the token asks for it or its deadline passes: Z3 does not keep its own time-outs in all
+// of its loops.
 class Watchdog {
  public:
   Watchdog(::z3::context& context, const base::StopToken& stop)
@@ -48,6 +49,7 @@ Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop
   parameters.set("timeout", static_cast<unsigned>(std::max<int64_t>(1, budget.time.count())));
   parameters.set("core.minimize", false);  // a third of the time for little
   solver.set(parameters);
+  const base::StopToken limited = stop.WithDeadline(base::StopToken::Clock::now() + budget.time);
   Translator translate(*query.arena, context);
   std::map<std::string, ::z3::expr> literals;
   ::z3::expr_vector assumptions(context);
@@ -69,7 +71,7 @@ Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop
   }
   ::z3::check_result result = ::z3::unknown;
   {
-    const Watchdog watchdog(context, stop);
+    const Watchdog watchdog(context, limited);
     result = solver.check(assumptions);
   }
   switch (result) {
@@ -95,7 +97,7 @@ Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop
   }
   if (stop.cancelled()) return Unknown{"interrupted"};
   const std::string reason = solver.reason_unknown();
-  if (reason == "timeout" || reason == "canceled") return Unknown{fmt::format("time-out after {} ms", budget.time.count())};
+  if (reason == "timeout" || reason == "canceled" || limited.expired()) return Unknown{fmt::format("time-out after {} ms", budget.time.count())};
   return Unknown{"Z3: " + reason};
 }
 
