@@ -72,8 +72,8 @@ std::vector<Stmt> Parser::ParseBlock() {
 }
 
 void Parser::ParseStatement(std::vector<Stmt>& out) {
-  static constexpr int kDeepest = 60;
-  if (nesting_ >= kDeepest) {
+  static constexpr int kDeepestBlock = 60;
+  if (nesting_ >= kDeepestBlock) {
     diagnostics_.Report(Kind::kSyntaxNesting, Peek().span, "statements are nested too deeply");
     SkipLine();
     return;
