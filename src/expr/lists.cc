@@ -69,19 +69,33 @@ TermId AxiomOfLiteral(Arena& arena, TermId t) {
   return arena.And(std::move(facts));
 }
 
+// Lists with equal items are equal: for the two sides of an equation.
+TermId Extensionality(Arena& arena, TermId equation) {
+  const TermId a = arena.arg(equation, 0);
+  const TermId b = arena.arg(equation, 1);
+  const TermId k = arena.FreshConstant("difference", arena.Int());
+  const TermId inside = arena.And(arena.Le(arena.IntNumber(0), k), arena.Lt(k, arena.Length(a)));
+  const TermId differ = arena.And(inside, arena.Not(arena.Eq(arena.At(a, k), arena.At(b, k))));
+  return arena.Or({equation, arena.Not(arena.Eq(arena.Length(a), arena.Length(b))), differ});
+}
+
 }  // namespace
 
 std::vector<TermId> ListAxioms(Arena& arena, std::span<const TermId> formulas, std::unordered_set<TermId>& done) {
   std::unordered_set<TermId> seen;
   std::vector<TermId> lists;
+  std::vector<TermId> equations;
   for (const TermId formula : formulas) {
     VisitPostorder(arena, formula, seen, [&](TermId t) {
       if (arena.sort(arena.sort_of(t)).kind == SortKind::kList && !arena.IsOpen(t) && done.insert(t).second) {
         lists.push_back(t);
       }
+      const bool equation = arena.op(t) == Op::kEq && arena.sort(arena.sort_of(arena.arg(t, 0))).kind == SortKind::kList;
+      if (equation && !arena.IsOpen(t) && done.insert(t).second) equations.push_back(t);
     });
   }
   std::vector<TermId> axioms;
+  for (const TermId equation : equations) axioms.push_back(Extensionality(arena, equation));
   for (const TermId t : lists) {
     switch (arena.op(t)) {
       case Op::kListMake: axioms.push_back(AxiomOfLiteral(arena, t)); break;

@@ -82,6 +82,8 @@ class Checker {
   void Assume(const AssumeDef& def);
   void Summary(const SummaryDef& def);
   void Invariant(const InvariantDef& def);
+  /// An initial value may mention parameters, functions and, where each robot has its own, `pid`.
+  void RestrictInitial(ExprId e, const Variable& variable);
   /// Reports each name in `e` that this kind of specification must not mention.
   void RestrictScope(ExprId e, const AssumeDef* port, std::string_view what);
 

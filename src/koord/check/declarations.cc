@@ -24,7 +24,9 @@ Model Checker::Run() {
   DeclareAll();
   place_ = Place::kInit;
   for (const Variable& v : std::vector<Variable>(model_.variables)) {
-    if (v.initial.valid()) NeedType(v.initial, v.type, fmt::format("the initial value of `{}`", v.name));
+    if (!v.initial.valid()) continue;
+    NeedType(v.initial, v.type, fmt::format("the initial value of `{}`", v.name));
+    RestrictInitial(v.initial, v);
   }
   for (size_t f = 0; f < model_.functions.size(); ++f) {
     const FunctionDef* def = model_.functions[f].def;

@@ -79,6 +79,22 @@ void Checker::Summary(const SummaryDef& def) {
   RestrictScope(def.body, nullptr, "a summary");
 }
 
+void Checker::RestrictInitial(ExprId id, const Variable& variable) {
+  const lang::Expr& e = exprs_[id];
+  const Ref ref = model_.RefOf(id);
+  const bool reads = (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell) && e.kind != ExprKind::kCall &&
+                     model_.variables[ref.index].kind != VariableKind::kParam;
+  const bool port = ref.kind == RefKind::kFunction && model_.functions[ref.index].port >= 0;
+  const bool robot = e.kind == ExprKind::kPid && !variable.PerRobot();
+  if (reads || port || robot) {
+    diagnostics_.Report(Kind::kKoordSpecScope, e.span, fmt::format("the initial value of `{}` cannot mention this", variable.name))
+        .Under(robot ? "all robots share the variable" : "nothing has a value yet")
+        .Help("compute it in `init`");
+    return;
+  }
+  for (const ExprId arg : e.args) RestrictInitial(arg, variable);
+}
+
 void Checker::RestrictScope(ExprId root, const AssumeDef* port, std::string_view what) {
   const std::function<void(ExprId)> visit = [&](ExprId id) {
     const lang::Expr& e = exprs_[id];

@@ -29,9 +29,19 @@ TermId Executor::Specification(ExprId e, const View& view, TermId robot, const V
   return result;
 }
 
-TermId Executor::Value(ExprId e, TypeId type, const View& parameters) {
-  frame_ = Frame{&parameters, nullptr, {}, false, nullptr, nullptr, {}};
-  return EvalAs(e, type);
+TermId Executor::Value(ExprId e, TypeId type, const View& parameters, TermId robot) {
+  State state;
+  state.value = parameters.value;
+  state.path = arena_.True();
+  state.broke = state.continued = state.ended = state.locked = state.stopped = arena_.False();
+  Effect effect;
+  frame_ = Frame{&parameters, nullptr, robot, false, &state, &effect, {}};
+  const TermId value = EvalAs(e, type);
+  if (!effect.checks.empty()) {
+    diagnostics_.Report(diag::Kind::kKoordUndefinedOperation, effect.checks[0].span, "this initial value may be undefined")
+        .Help("compute it in `init`, behind a condition");
+  }
+  return value;
 }
 
 TermId Executor::Robot() {

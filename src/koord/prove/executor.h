@@ -66,8 +66,8 @@ class Executor {
   /// at if there are such names. `old` is the moment of `old(...)`, or nullptr.
   TermId Specification(ExprId e, const View& view, TermId robot, const View* old,
                        const std::map<uint32_t, TermId>& bindings);
-  /// An initial value: an expression over parameters, as a value of `type`.
-  TermId Value(ExprId e, TypeId type, const View& parameters);
+  /// An initial value for `robot`: an expression over parameters, as a value of `type`. Reports it if it may have none.
+  TermId Value(ExprId e, TypeId type, const View& parameters, TermId robot);
   bool expands_robots() const { return options_.expand_robots; }
   /// Did the last specification mention the robot?
   bool used_robot() const { return used_robot_; }

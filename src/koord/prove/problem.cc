@@ -130,12 +130,26 @@ TermId Problems::First(size_t action, const std::vector<TermId>& participants) {
   return arena_.And(std::move(facts));
 }
 
+// No operation fails in what the participants do: a counterexample is a round that can be completed.
+TermId Problems::Succeeds(const std::vector<TermId>& participants) {
+  std::vector<TermId> facts;
+  for (const TermId r : participants) {
+    for (size_t a = 1; a < columns(); ++a) {
+      for (const DefinednessCheck& c : round_.EffectOf(a, r).checks) {
+        facts.push_back(arena_.Or({arena_.Not(round_.Acts(r, a)), arena_.Not(c.reached), c.holds}));
+      }
+    }
+  }
+  return arena_.And(std::move(facts));
+}
+
 Problem Problems::Step(size_t invariant, std::optional<size_t> action, bool reachable) {
   const TermId refuted = Refute(theory_.Invariant(invariant, round_.end()));
   std::vector<Assertion> assertions{{refuted, ""}};
   Append(assertions, round_.Relate(refuted, Everyone()));
   const std::vector<TermId> participants = round_.participants();
   if (action) assertions.push_back({First(*action, participants), ""});
+  if (options_.expand) assertions.push_back({Succeeds(participants), ""});
   for (const TermId r : participants) {
     std::vector<Assertion>& promises = promises_[r];
     if (promises.empty()) promises = theory_.PortPromises(round_, r);
@@ -186,6 +200,15 @@ Problem Problems::Undefined(size_t action, TermId undefined, TermId robot) {
   return Ground(std::move(assertions), {});
 }
 
+Problem Problems::ImpossibleSummary(size_t f) {
+  Problem problem;
+  problem.query.arena = &arena_;
+  problem.query.assertions = {{theory_.NoResult(f), ""}, {arena_.Le(arena_.IntNumber(1), vocabulary_.robots()), ""}};
+  for (const Assertion& a : theory_.Facts()) problem.query.assertions.push_back(a);
+  problem.assertions = problem.query.assertions;
+  return problem;
+}
+
 Problem Problems::SomeInitialState() {
   std::vector<Assertion> assertions{{vocabulary_.IsRobot(robot_), ""}};
   const View& first = round_.start();
@@ -225,7 +248,9 @@ Problem Problems::SomePromise(size_t p, bool with) {
   const Theory::Promise promise = theory_.Promises(round_.start(), round_.end(), robot_)[p];
   std::vector<Assertion> assertions{{vocabulary_.IsRobot(robot_), ""}, {promise.condition, ""}};
   if (with) {
-    assertions.push_back({promise.promise, promise.name});
+    for (const Theory::Promise& other : theory_.Promises(round_.start(), round_.end(), robot_)) {
+      assertions.push_back({arena_.Implies(other.condition, other.promise), other.name});
+    }
     for (size_t v = 0; v < model_.variables.size(); ++v) {
       // The environment moves sensors only.
       if (model_.variables[v].kind != VariableKind::kActuator) continue;

@@ -46,13 +46,16 @@ class Problems {
   Problem DefinedAt(size_t action, size_t check, int64_t robot);
   const std::vector<DefinednessCheck>& ChecksOf(size_t action);
 
+  /// Satisfiable if for some arguments no result of function `f` satisfies its summaries.
+  Problem ImpossibleSummary(size_t f);
   /// [Sat] there is an initial state.
   Problem SomeInitialState();
   /// [Sat] general assumptions and summaries allow the values that the action computes.
   Problem SomeValues(size_t action);
   /// [Sat] some state that satisfies the invariants enables the event.
   Problem SomeEnabled(size_t action);
-  /// [Sat] where the condition of promise `p` holds, the environment can keep it; `with`: keep it, else only the condition.
+  /// [Sat] where the condition of promise `p` holds, the environment can keep it and all others; `with`: and keeps them,
+  /// else only the condition holds.
   Problem SomePromise(size_t p, bool with);
   /// [Now] where the invariants and the condition of promise `p` hold, the promise holds at t = 0.
   Problem PromiseNow(size_t p);
@@ -71,6 +74,7 @@ class Problems {
   const std::vector<solve::Assertion>& Everything(const View& view);
   std::vector<TermId> Everyone();
   void Instantiate(Problem& problem);
+  TermId Succeeds(const std::vector<TermId>& participants);
   TermId First(size_t action, const std::vector<TermId>& participants);
   TermId Refute(TermId goal);
   Problem Undefined(size_t action, TermId undefined, TermId robot);

@@ -27,6 +27,8 @@ class Prover {
     // Stated once here for names and for what cannot be proved at all; each task states its own again, in parallel.
     expr::Arena arena;
     Problems problems(arena, model_, {options_.robots, false}, diagnostics_);
+    problems.theory().DeclaredValues(problems.round().start());
+    problems.theory().Background();
     if (diagnostics_.errors() > errors) return std::move(report_);
     tasks_ = ListTasks(problems);
     for (const Task& task : tasks_) report_.obligations += task.kind == TaskKind::kRound ? problems.columns() : task.IsObligation() ? 1 : 0;
@@ -204,7 +206,7 @@ class Prover {
   void MakeRows(Problems& problems) {
     const std::vector<std::string>& actions = problems.round().actions();
     for (size_t i = 0; i < problems.theory().invariants(); ++i) report_.rows.push_back({problems.theory().InvariantName(i), {}, {}, {}});
-    Row defined{"defined", {}, {}, {}};
+    Row defined{"well-defined", {}, {}, {}};
     for (const Task& task : tasks_) {
       if (task.kind == TaskKind::kInitially) report_.rows[task.subject].cells.push_back(MakeCell(task, "initially"));
       if (task.kind == TaskKind::kStep) report_.rows[task.subject].cells.push_back(MakeCell(task, actions[task.action]));
@@ -228,6 +230,15 @@ class Prover {
       case TaskKind::kFollows:
       case TaskKind::kDefined:
       case TaskKind::kSomeCondition: return;
+      case TaskKind::kImpossible:
+        if (std::holds_alternative<solve::Sat>(task.answer)) {
+          std::vector<std::string> names;
+          for (const SummaryDef* def : model_.summaries) {
+            if (problems.theory().FunctionOf(*def) == task.subject) names.push_back(Theory::NameOf(*def));
+          }
+          reporter.Contradiction(fmt::format("for some arguments no result of `{}` is possible", model_.functions[task.subject].name), names);
+        }
+        return;
       case TaskKind::kSomeInitial:
         if (unsat != nullptr) reporter.Contradiction("no initial state is possible", unsat->core);
         return;
@@ -235,7 +246,7 @@ class Prover {
         if (unsat != nullptr) reporter.Contradiction(fmt::format("what `{}` computes cannot exist", action), unsat->core);
         return;
       case TaskKind::kSomeEnabled:
-        if (unsat != nullptr && !report_.contradiction) reporter.NeverEnabled(task.action, unsat->core);
+        if (unsat != nullptr) never_.emplace_back(task.action, unsat->core);
         return;
       case TaskKind::kSomePromise: {
         if (unsat == nullptr) return;
@@ -256,6 +267,7 @@ class Prover {
     if (report_.contradiction || report_.interrupted) return;
     if (report_.AllProved()) {
       for (const size_t p : not_now_) reporter.Unrealisable(p);
+      for (const auto& [action, core] : never_) reporter.NeverEnabled(action, core);
     }
     std::set<std::string> used;
     for (const Row& row : report_.rows) {
@@ -282,6 +294,7 @@ class Prover {
   std::vector<Task> tasks_;
   std::map<size_t, Witness> witnesses_;  // by invariant
   std::vector<size_t> not_now_;
+  std::vector<std::pair<size_t, std::vector<std::string>>> never_;
   Report report_;
 };
 

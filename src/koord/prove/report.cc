@@ -148,11 +148,12 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
 void Reporter::FailedDefinedness(Cell& cell, size_t action) {
   Row& row = report_.rows.back();
   // Which operation: ask for each alone, with a team small enough to be sure.
-  const std::vector<DefinednessCheck> checks = problems_.ChecksOf(action);
   for (int64_t n = options_.robots.value_or(1); n <= options_.robots.value_or(4) && n <= 8; ++n) {
     expr::Arena arena;
     diag::Diagnostics ignored;
     Problems small(arena, model_, {n, true}, ignored);
+    // Not those of the symbolic team: with fixed N_sys some of them are trivially true and left out.
+    const std::vector<DefinednessCheck> checks = small.ChecksOf(action);
     for (size_t c = 0; c < checks.size(); ++c) {
       for (int64_t r = 0; r < n; ++r) {
         Problem problem = small.DefinedAt(action, c, r);
@@ -177,7 +178,7 @@ void Reporter::FailedDefinedness(Cell& cell, size_t action) {
       }
     }
   }
-  Undecided(row, cell, checks.front().span, nullptr);
+  Undecided(row, cell, problems_.ChecksOf(action).front().span, nullptr);
 }
 
 void Reporter::Undecided(Row& row, const Cell& cell, Span span, const Witness* candidate) {
@@ -207,9 +208,9 @@ void Reporter::Verdicts() {
   const auto all_proved = [](const Row& row) {
     return std::all_of(row.cells.begin(), row.cells.end(), [](const Cell& c) { return c.outcome == Outcome::kProved; });
   };
-  // What operations mean where they are undefined is open, so a step proof is worth what the row `defined` is worth.
+  // What operations mean where they are undefined is open, so a step proof is worth what the row `well-defined` is worth.
   const bool has_defined = report_.rows.size() > model_.invariants.size();
-  const std::string defined = "the row `defined`";
+  const std::string defined = "the row `well-defined`";
   for (size_t i = 0; i < report_.rows.size(); ++i) {
     if (all_proved(report_.rows[i])) standing.insert(i < model_.invariants.size() ? "invariant " + report_.rows[i].name : defined);
   }

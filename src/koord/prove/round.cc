@@ -193,6 +193,10 @@ std::vector<solve::Assertion> Round::Relate(TermId goal, const std::vector<TermI
   writers_.clear();
   for (const TermId r : everyone) Participate(r);
   FindReads(goal);
+  // Of a round that is told in full, every shared variable matters.
+  for (size_t v = 0; !everyone.empty() && v < model_.variables.size(); ++v) {
+    if (model_.variables[v].kind == VariableKind::kAllwrite) FindReads(end_.value[v]);
+  }
   std::vector<solve::Assertion> result;
   for (const TermId r : participants_) result.push_back({StateOf(r), ""});
   result.push_back({Locks(), ""});

@@ -25,6 +25,7 @@ std::vector<Task> ListTasks(Problems& problems) {
   for (size_t a = problems.has_init() ? 0 : 1; a < actions.size(); ++a) {
     if (!problems.ChecksOf(a).empty()) add(TaskKind::kDefined, 0, a, "defined." + (a == 0 ? "init" : actions[a]));
   }
+  for (const size_t f : problems.theory().SummarisedFunctions()) add(TaskKind::kImpossible, f, 0, "sanity.summary");
   add(TaskKind::kSomeInitial, 0, 0, "sanity.initially");
   for (size_t a = 1; a < actions.size(); ++a) {
     add(TaskKind::kSomeValues, 0, a, "sanity.values." + actions[a]);
@@ -64,6 +65,7 @@ Problem StateTask(const Task& task, Problems& problems, Effort effort) {
     case TaskKind::kStep: return problems.Step(task.subject, task.action, false);
     case TaskKind::kFollows: return problems.Follows(task.subject, task.premises);
     case TaskKind::kDefined: return problems.Defined(task.action);
+    case TaskKind::kImpossible: return problems.ImpossibleSummary(task.subject);
     case TaskKind::kSomeInitial: return problems.SomeInitialState();
     case TaskKind::kSomeValues: return problems.SomeValues(task.action);
     case TaskKind::kSomeEnabled: return problems.SomeEnabled(task.action);

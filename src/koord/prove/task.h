@@ -14,6 +14,7 @@ enum class TaskKind : uint8_t {
   kStep,   // one invariant, the rounds in which one action is the first
   kFollows,  // one invariant, from others at the same moment
   kDefined,
+  kImpossible,  // a summary that no function can satisfy
   kSomeInitial,
   kSomeValues,
   kSomeEnabled,

@@ -74,12 +74,73 @@ std::vector<Assertion> Theory::Invariants(const View& view) {
   return result;
 }
 
-TermId Theory::Summary(const SummaryDef& def) {
+size_t Theory::FunctionOf(const SummaryDef& def) const {
   size_t index = 0;
   for (size_t i = 0; i < model_.functions.size(); ++i) {
     const Function& f = model_.functions[i];
     if (f.name == def.function || (f.port >= 0 && f.name.ends_with("." + def.function))) index = i;
   }
+  return index;
+}
+
+bool Theory::CallsFunctions(ExprId id) const {
+  const lang::Expr& e = model_.program->exprs[id];
+  const Ref ref = model_.RefOf(id);
+  if (ref.kind == RefKind::kOpaqueField || (ref.kind == RefKind::kFunction && e.kind == lang::ExprKind::kCall)) return true;
+  if (ref.kind == RefKind::kBuiltin && static_cast<Builtin>(ref.index) == Builtin::kDist) return true;
+  return std::any_of(e.args.begin(), e.args.end(), [&](ExprId arg) { return CallsFunctions(arg); });
+}
+
+std::vector<size_t> Theory::SummarisedFunctions() {
+  std::vector<size_t> result;
+  for (const SummaryDef* def : model_.summaries) {
+    const size_t f = FunctionOf(*def);
+    const bool simple = std::all_of(model_.summaries.begin(), model_.summaries.end(), [&](const SummaryDef* other) {
+      return FunctionOf(*other) != f || !CallsFunctions(other->body);
+    });
+    const expr::SortKind kind = arena_.sort(vocabulary_.SortOf(model_.functions[f].result)).kind;
+    const bool plain = kind == expr::SortKind::kBool || kind == expr::SortKind::kInt || kind == expr::SortKind::kReal ||
+                       kind == expr::SortKind::kEnum || kind == expr::SortKind::kRecord;
+    if (simple && plain && std::find(result.begin(), result.end(), f) == result.end()) result.push_back(f);
+  }
+  return result;
+}
+
+TermId Theory::NoResult(size_t index) {
+  const Function& f = model_.functions[index];
+  std::vector<TermId> arguments;
+  for (const TypeId p : f.parameters) arguments.push_back(arena_.FreshConstant("argument", vocabulary_.SortOf(p)));
+  const TermId result = arena_.FreshBound("result", vocabulary_.SortOf(f.result));
+  const View parameters = vocabulary_.MakeView("");
+  std::vector<TermId> wanted;
+  for (const SummaryDef* def : model_.summaries) {
+    if (FunctionOf(*def) != index) continue;
+    std::map<uint32_t, TermId> bindings;
+    const std::vector<uint32_t>& bound = model_.bound_by.at(def);
+    for (size_t i = 0; i < arguments.size(); ++i) bindings[bound[i]] = arguments[i];
+    bindings[bound.back()] = result;
+    wanted.push_back(executor_.Specification(def->body, parameters, {}, nullptr, bindings));
+  }
+  return arena_.Forall({result}, arena_.Not(arena_.And(std::move(wanted))));
+}
+
+std::vector<Assertion> Theory::Facts() {
+  std::vector<Assertion> result;
+  const View parameters = vocabulary_.MakeView("");
+  for (const AssumeDef* def : model_.assumptions) {
+    if (def->kind != AssumeKind::kFact || CallsFunctions(def->body)) continue;
+    result.push_back({executor_.Specification(def->body, parameters, {}, nullptr, {}), ""});
+  }
+  for (size_t v = 0; v < model_.variables.size(); ++v) {
+    const Variable& variable = model_.variables[v];
+    if (variable.kind != VariableKind::kParam || !variable.initial.valid()) continue;
+    result.push_back({arena_.Eq(parameters.value[v], executor_.Value(variable.initial, variable.type, parameters, {})), ""});
+  }
+  return result;
+}
+
+TermId Theory::Summary(const SummaryDef& def) {
+  const size_t index = FunctionOf(def);
   const Function& f = model_.functions[index];
   const std::vector<uint32_t>& bound = model_.bound_by.at(&def);
   std::map<uint32_t, TermId> bindings;
@@ -105,7 +166,7 @@ std::vector<Assertion> Theory::Background() {
   for (size_t v = 0; v < model_.variables.size(); ++v) {
     const Variable& variable = model_.variables[v];
     if (variable.kind != VariableKind::kParam || !variable.initial.valid()) continue;
-    const TermId value = executor_.Value(variable.initial, variable.type, parameters);
+    const TermId value = executor_.Value(variable.initial, variable.type, parameters, {});
     result.push_back({arena_.Eq(parameters.value[v], value), ""});
   }
   for (const TermId axiom : vocabulary_.Axioms()) result.push_back({axiom, ""});
@@ -118,7 +179,7 @@ std::vector<Assertion> Theory::DeclaredValues(const View& view) {
   for (size_t v = 0; v < model_.variables.size(); ++v) {
     const Variable& variable = model_.variables[v];
     if (variable.kind == VariableKind::kParam || !variable.initial.valid()) continue;
-    const auto value = [&](TermId) { return executor_.Value(variable.initial, variable.type, parameters); };
+    const auto value = [&](TermId robot) { return executor_.Value(variable.initial, variable.type, parameters, robot); };
     const TermId fact = variable.PerRobot()
                             ? ForEachRobot([&](TermId r) { return arena_.Eq(arena_.Select(view.value[v], r), value(r)); })
                             : arena_.Eq(view.value[v], value({}));

@@ -15,6 +15,13 @@ class Theory {
   /// `for all robots r: body(r)`; spelled out when the robots are.
   TermId ForEachRobot(const std::function<TermId(TermId)>& body);
 
+  /// Functions whose summaries speak of nothing but their own arguments and result.
+  std::vector<size_t> SummarisedFunctions();
+  /// For some arguments, every result contradicts a summary of function `f`.
+  TermId NoResult(size_t f);
+  /// The general assumptions that mention no function.
+  std::vector<solve::Assertion> Facts();
+
   /// Axioms of the vocabulary, general assumptions, summaries: true at any time.
   std::vector<solve::Assertion> Background();
   /// Declared initial values, at `view`, for each robot.
@@ -43,12 +50,14 @@ class Theory {
 
   std::string NameOf(const AssumeDef& def) const;
   static std::string NameOf(const SummaryDef& def) { return "summary " + def.function; }
+  size_t FunctionOf(const SummaryDef& def) const;
   /// External functions that are called but have no summary.
   std::vector<std::string> Unconstrained() const;
 
  private:
   TermId PerRobot(ExprId e, const View& view);
   TermId Summary(const SummaryDef& def);
+  bool CallsFunctions(ExprId e) const;
   bool UsesOld(ExprId e) const;
 
   Vocabulary& vocabulary_;

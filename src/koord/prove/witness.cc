@@ -104,6 +104,7 @@ class Storyteller {
     std::vector<std::string> parts;
     for (const ReadRecord& read : problems_.round().EffectOf(action, robot).reads) {
       if (!IsTrue(sat, read.reached) || arena_.IsOpen(read.value)) continue;
+      if (!read.index.valid() && model_.types.Is(model_.variables[read.variable].type, lang::TypeKind::kArray)) continue;
       std::string name = model_.variables[read.variable].name;
       if (read.index.valid()) name += fmt::format("[{}]", Show(sat, read.index));
       std::string part = fmt::format("{} = {}", name, Show(sat, read.value));
@@ -120,7 +121,8 @@ class Storyteller {
       for (size_t v = 0; v < model_.variables.size(); ++v) {
         const Variable& variable = model_.variables[v];
         if (variable.kind == VariableKind::kParam || variable.kind == VariableKind::kSensor ||
-            variable.kind == VariableKind::kAllwrite || variable.function >= 0) {
+            variable.kind == VariableKind::kAllwrite || variable.function >= 0 ||
+            model_.types.Is(variable.type, lang::TypeKind::kArray)) {
           continue;
         }
         const std::string before = Show(sat, arena_.Select(round.start().value[v], robot));
@@ -169,9 +171,8 @@ class Storyteller {
     Round& round = problems_.round();
     for (size_t v = 0; v < model_.variables.size(); ++v) {
       const Variable& variable = model_.variables[v];
-      if (variable.function >= 0) continue;
+      if (variable.function >= 0 || model_.types.Is(variable.type, lang::TypeKind::kArray)) continue;
       if (!variable.PerRobot()) {
-        if (model_.types.Is(variable.type, lang::TypeKind::kArray)) continue;
         visit(v, false, {}, round.start().value[v]);
         if (!initial && variable.kind != VariableKind::kParam) visit(v, true, {}, round.end().value[v]);
         continue;
