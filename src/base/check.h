@@ -3,8 +3,8 @@
 #include <sstream>
 #include <string>
 
-/// `CHECK(cond) << values` stops the program when an internal invariant is broken. Always on, for bugs of ours only:
-/// wrong input is a diagnostic, a failing world is a `Result`, and ignorance is a `Verdict`.
+/// `CHECK(cond) << values` stops the program when an internal invariant is broken. Always on, for bugs of
+/// ours only: wrong input is a diagnostic, a failing world is a `Result`, and ignorance is a `Verdict`.
 
 namespace rondo::base {
 

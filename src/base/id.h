@@ -6,7 +6,8 @@
 
 namespace rondo::base {
 
-/// An index into one arena, typed by `Tag` so that ids of different arenas cannot be mixed up. Default: no object.
+/// An index into one arena, typed by `Tag` so that ids of different arenas cannot be mixed up. Default: no
+/// object.
 template <typename Tag>
 struct Id {
   static constexpr uint32_t kNone = 0xffffffffu;

@@ -39,7 +39,8 @@ struct Diagnostic {
   Diagnostic& Fix(Span where, std::string replacement);
 };
 
-/// Where phases report. Keeps the order of reporting; a second report of the same kind at the same span is dropped.
+/// Where phases report. Keeps the order of reporting; a second report of the same kind at the same span is
+/// dropped.
 class Diagnostics {
  public:
   /// The reference stays valid until the next report.

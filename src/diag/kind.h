@@ -8,8 +8,8 @@ namespace rondo::diag {
 
 enum class Severity : uint8_t { kError, kWarning, kNote };
 
-/// Every kind of diagnostic that Rondo reports. The registry holds its id, explanation and minimal example; a golden
-/// case under testdata/ shows each one.
+/// Every kind of diagnostic that Rondo reports. The registry holds its id, explanation and minimal example; a
+/// golden case under testdata/ shows each one.
 enum class Kind : uint8_t {
   // Reading any of the languages.
   kSyntaxUnexpected,
@@ -65,12 +65,12 @@ enum class Kind : uint8_t {
 
 struct KindInfo {
   Kind kind;
-  std::string_view id;        ///< what people type after `rondo explain`
+  std::string_view id;  ///< what people type after `rondo explain`
   Severity severity;
-  std::string_view summary;   ///< one line
+  std::string_view summary;  ///< one line
   std::string_view explanation;
-  std::string_view example;   ///< a program for which exactly this kind is reported
-  std::string_view verb;      ///< the verb that reports it: `check` or `prove`
+  std::string_view example;  ///< a program for which exactly this kind is reported
+  std::string_view verb;     ///< the verb that reports it: `check` or `prove`
 };
 
 const KindInfo& Info(Kind kind);

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <string>
-
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "diag/diagnostic.h"
 
@@ -14,8 +13,8 @@ enum class Colour : bool { kOff, kOn };
 /// The diagnostic with its source lines, carets, labels, notes, helps and fixes, ending in a newline.
 std::string RenderText(const SourceSet& sources, const Diagnostic& diagnostic, Colour colour);
 
-/// {kind, severity, message, file, line, column, end_line, end_column, label, labels, notes, help, fixes}; file and
-/// positions are absent when the diagnostic is not about one place.
+/// {kind, severity, message, file, line, column, end_line, end_column, label, labels, notes, help, fixes};
+/// file and positions are absent when the diagnostic is not about one place.
 nlohmann::json RenderJson(const SourceSet& sources, const Diagnostic& diagnostic);
 
 /// {file, line, column, end_line, end_column} of a valid span.

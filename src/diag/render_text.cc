@@ -1,7 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
-
-#include <fmt/format.h>
 
 #include "diag/render.h"
 
@@ -17,9 +17,12 @@ struct Painter {
 
 std::string_view SeverityColour(Severity severity) {
   switch (severity) {
-    case Severity::kError: return "1;31";
-    case Severity::kWarning: return "1;33";
-    case Severity::kNote: return "1;36";
+    case Severity::kError:
+      return "1;31";
+    case Severity::kWarning:
+      return "1;33";
+    case Severity::kNote:
+      return "1;36";
   }
   return "";
 }
@@ -38,7 +41,8 @@ Mark MakeMark(const SourceSet& sources, Span span, bool primary, std::string mes
   const Position end = sources.Locate(span.file, std::max(span.begin, span.end));
   const uint32_t line_end = CountCodePoints(sources.Line(span.file, begin.line)) + 1;
   const uint32_t stop = end.line == begin.line ? end.column : line_end;
-  return {begin.line, begin.column, stop > begin.column ? stop - begin.column : 1, primary, std::move(message)};
+  return {begin.line, begin.column, stop > begin.column ? stop - begin.column : 1, primary,
+          std::move(message)};
 }
 
 // Tabs become one space so that carets stay below what they point at.
@@ -53,8 +57,8 @@ std::string Flatten(std::string_view line) {
 std::string RenderText(const SourceSet& sources, const Diagnostic& d, Colour colour) {
   const Painter paint{colour == Colour::kOn};
   const std::string_view tone = SeverityColour(d.severity);
-  std::string out =
-      fmt::format("{}{} [{}]\n", paint(tone, fmt::format("{}: ", SeverityName(d.severity))), d.message, Info(d.kind).id);
+  std::string out = fmt::format("{}{} [{}]\n", paint(tone, fmt::format("{}: ", SeverityName(d.severity))),
+                                d.message, Info(d.kind).id);
 
   // The primary file first, then the others in the order of their labels.
   std::vector<FileId> files;
@@ -79,8 +83,8 @@ std::string RenderText(const SourceSet& sources, const Diagnostic& d, Colour col
     const std::vector<Mark>& list = marks[file];
     const auto head = std::find_if(list.begin(), list.end(), [](const Mark& m) { return m.primary; });
     const Mark& at = head != list.end() ? *head : list.front();
-    out += fmt::format("{:{}}{} {}:{}:{}\n{}\n", "", gutter, paint("34", i == 0 ? "-->" : ":::"), sources.path(file),
-                       at.line, at.column, bar);
+    out += fmt::format("{:{}}{} {}:{}:{}\n{}\n", "", gutter, paint("34", i == 0 ? "-->" : ":::"),
+                       sources.path(file), at.line, at.column, bar);
     uint32_t shown = 0;
     for (const Mark& mark : list) {
       if (mark.line != shown) {
@@ -98,7 +102,8 @@ std::string RenderText(const SourceSet& sources, const Diagnostic& d, Colour col
     bool first = true;
     while (start <= note.size()) {
       const size_t end = std::min(note.find('\n', start), note.size());
-      out += fmt::format("{:{}} {} {}\n", "", gutter, paint("34", first ? "=" : "|"), note.substr(start, end - start));
+      out += fmt::format("{:{}} {} {}\n", "", gutter, paint("34", first ? "=" : "|"),
+                         note.substr(start, end - start));
       first = false;
       start = end + 1;
     }

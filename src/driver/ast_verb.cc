@@ -18,7 +18,8 @@ void AddAstVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("ast", "show how a Koord program is read");
   verb->add_option("FILE", options->file, "a program or specification")->required();
-  verb->add_flag("--json", options->json, "the syntax tree as JSON; otherwise the canonical text without comments");
+  verb->add_flag("--json", options->json,
+                 "the syntax tree as JSON; otherwise the canonical text without comments");
   verb->footer("example: rondo ast --json examples/koord/lineform.koord");
   verb->callback([options, &status] {
     Session session;
@@ -28,7 +29,10 @@ void AddAstVerb(CLI::App& app, int& status) {
       status = kRejected;
       return;
     }
-    Print(options->json ? koord::ToJson(session.sources, *program).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n" : koord::Skeleton(*program));
+    Print(options->json ? koord::ToJson(session.sources, *program)
+                                  .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                              "\n"
+                        : koord::Skeleton(*program));
   });
 }
 

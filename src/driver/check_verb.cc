@@ -1,5 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "driver/exit_status.h"
@@ -32,8 +33,11 @@ int Run(const Options& options) {
   const bool good = readable && !session.diagnostics.has_errors();
   if (options.json) {
     nlohmann::json list = nlohmann::json::array();
-    for (const diag::Diagnostic& d : session.diagnostics.Sorted()) list.push_back(diag::RenderJson(session.sources, d));
-    Print(nlohmann::json{{"command", "check"}, {"ok", good}, {"diagnostics", list}}.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    for (const diag::Diagnostic& d : session.diagnostics.Sorted())
+      list.push_back(diag::RenderJson(session.sources, d));
+    Print(nlohmann::json{{"command", "check"}, {"ok", good}, {"diagnostics", list}}.dump(
+              2, ' ', false, nlohmann::json::error_handler_t::replace) +
+          "\n");
   } else {
     PrintDiagnostics(session.sources, session.diagnostics);
   }

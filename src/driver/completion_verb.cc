@@ -1,5 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 
 #include "driver/exit_status.h"
 #include "driver/terminal.h"
@@ -41,16 +42,19 @@ std::string Bash(const CLI::App& app) {
   esac
 }}
 complete -o filenames -F _rondo rondo
-)bash", verbs, cases);
+)bash",
+                     verbs, cases);
 }
 
 std::string Fish(const CLI::App& app) {
   std::string text;
   for (const CLI::App* verb : app.get_subcommands({})) {
-    text += fmt::format("complete -c rondo -n __fish_use_subcommand -a {} -d '{}'\n", verb->get_name(), verb->get_description());
+    text += fmt::format("complete -c rondo -n __fish_use_subcommand -a {} -d '{}'\n", verb->get_name(),
+                        verb->get_description());
     for (const CLI::Option* option : verb->get_options()) {
       for (const std::string& name : option->get_lnames()) {
-        text += fmt::format("complete -c rondo -n '__fish_seen_subcommand_from {}' -l {}\n", verb->get_name(), name);
+        text += fmt::format("complete -c rondo -n '__fish_seen_subcommand_from {}' -l {}\n", verb->get_name(),
+                            name);
       }
     }
   }
@@ -62,7 +66,9 @@ std::string Fish(const CLI::App& app) {
 void AddCompletionVerb(CLI::App& app, int& status) {
   auto shell = std::make_shared<std::string>();
   CLI::App* verb = app.add_subcommand("completion", "print a completion script for a shell");
-  verb->add_option("SHELL", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  verb->add_option("SHELL", *shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
   verb->footer("example: source <(rondo completion bash)");
   verb->callback([shell, &app, &status] {
     status = kEstablished;

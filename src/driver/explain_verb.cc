@@ -1,5 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "driver/exit_status.h"
@@ -16,12 +17,20 @@ int Explain(const std::string& id, bool json) {
     std::vector<std::string> ids;
     for (const diag::KindInfo& known : diag::AllKinds()) ids.emplace_back(known.id);
     const std::string near = lang::Suggest(id, ids);
-    PrintFailure(fmt::format("there is no diagnostic `{}`{}", id, near.empty() ? "; `rondo explain` lists them" : fmt::format("; did you mean `{}`?", near)));
+    PrintFailure(fmt::format(
+        "there is no diagnostic `{}`{}", id,
+        near.empty() ? "; `rondo explain` lists them" : fmt::format("; did you mean `{}`?", near)));
     return kUsage;
   }
   if (json) {
-    Print(nlohmann::json{{"kind", info->id}, {"severity", diag::SeverityName(info->severity)}, {"summary", info->summary},
-                         {"explanation", info->explanation}, {"example", info->example}, {"verb", info->verb}}.dump(2) + "\n");
+    Print(nlohmann::json{{"kind", info->id},
+                         {"severity", diag::SeverityName(info->severity)},
+                         {"summary", info->summary},
+                         {"explanation", info->explanation},
+                         {"example", info->example},
+                         {"verb", info->verb}}
+              .dump(2) +
+          "\n");
     return kEstablished;
   }
   std::string example;
@@ -31,8 +40,9 @@ int Explain(const std::string& id, bool json) {
     example += end == 0 ? "\n" : fmt::format("    {}\n", rest.substr(0, end));
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
-  Print(fmt::format("{} [{}]: {}\n\n{}\n\nFor example, `rondo {}` reports it for\n\n{}", diag::SeverityName(info->severity), info->id,
-                    info->summary, info->explanation, info->verb, example));
+  Print(fmt::format("{} [{}]: {}\n\n{}\n\nFor example, `rondo {}` reports it for\n\n{}",
+                    diag::SeverityName(info->severity), info->id, info->summary, info->explanation,
+                    info->verb, example));
   return kEstablished;
 }
 
@@ -45,7 +55,8 @@ void AddExplainVerb(CLI::App& app, int& status) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("explain", "what a diagnostic means, with an example");
-  verb->add_option("KIND", options->kind, "the name in brackets, such as koord-not-inductive; without it: all of them");
+  verb->add_option("KIND", options->kind,
+                   "the name in brackets, such as koord-not-inductive; without it: all of them");
   verb->add_flag("--json", options->json, "as JSON");
   verb->footer("example: rondo explain koord-lost-update");
   verb->callback([options, &status] {
@@ -55,8 +66,11 @@ void AddExplainVerb(CLI::App& app, int& status) {
     }
     nlohmann::json list = nlohmann::json::array();
     for (const diag::KindInfo& info : diag::AllKinds()) {
-      if (options->json) list.push_back({{"kind", info.id}, {"severity", diag::SeverityName(info.severity)}, {"summary", info.summary}});
-      else Print(fmt::format("{:28} {:8} {}\n", info.id, diag::SeverityName(info.severity), info.summary));
+      if (options->json)
+        list.push_back(
+            {{"kind", info.id}, {"severity", diag::SeverityName(info.severity)}, {"summary", info.summary}});
+      else
+        Print(fmt::format("{:28} {:8} {}\n", info.id, diag::SeverityName(info.severity), info.summary));
     }
     if (options->json) Print(list.dump(2) + "\n");
   });

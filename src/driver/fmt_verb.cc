@@ -1,5 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 
 #include "base/check.h"
 #include "base/file.h"
@@ -32,7 +33,8 @@ int FormatFile(const std::string& file, const Options& options) {
   Session again;
   koord::Program reread;
   koord::Parse(again.sources, again.sources.Add(file, text), reread, again.diagnostics);
-  CHECK(!again.diagnostics.has_errors() && koord::Skeleton(reread) == koord::Skeleton(*program)) << "formatting would change " << file;
+  CHECK(!again.diagnostics.has_errors() && koord::Skeleton(reread) == koord::Skeleton(*program))
+      << "formatting would change " << file;
   CHECK(reread.comments.size() == program->comments.size()) << "formatting would lose a comment of " << file;
   if (options.print) {
     Print(text);

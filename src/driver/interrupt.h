@@ -4,7 +4,8 @@
 
 namespace rondo::driver {
 
-/// While it lives, Ctrl-C requests a stop through the token; a second Ctrl-C ends the process at once. One at a time.
+/// While it lives, Ctrl-C requests a stop through the token; a second Ctrl-C ends the process at once. One at
+/// a time.
 class InterruptScope {
  public:
   explicit InterruptScope(const base::StopToken& stop);

@@ -1,8 +1,8 @@
 #include "driver/load.h"
 
-#include <filesystem>
-
 #include <fmt/format.h>
+
+#include <filesystem>
 
 #include "base/file.h"
 #include "driver/terminal.h"

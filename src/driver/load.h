@@ -16,12 +16,13 @@ struct Session {
 
 struct LoadOptions {
   std::string file;
-  std::string spec;  ///< a specification; empty: the file beside the program with the extension `.spec`, if there is one
+  std::string spec;  ///< a specification; empty: the file beside the program with the extension `.spec`, if
+                     ///< there is one
   bool with_spec = true;
 };
 
-/// Reads and parses a Koord program and the specification beside it. nullopt, after a message, when a file cannot be
-/// read; syntax errors are in `session.diagnostics`.
+/// Reads and parses a Koord program and the specification beside it. nullopt, after a message, when a file
+/// cannot be read; syntax errors are in `session.diagnostics`.
 std::optional<koord::Program> Load(const LoadOptions& options, Session& session);
 
 }  // namespace rondo::driver

@@ -1,12 +1,11 @@
 #include "driver/main.h"
 
+#include <fmt/format.h>
 #include <signal.h>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
-
-#include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "driver/exit_status.h"
 #include "driver/terminal.h"
@@ -21,8 +20,10 @@ int Main(int argc, char** argv) {
   CLI::App app{"Rondo: write, prove and run programs for teams of robots", "rondo"};
   app.require_subcommand(1);
   app.set_version_flag("--version", "rondo 0.1.0");
-  app.footer("example: rondo prove examples/koord/lineform.koord\n\n"
-             "exit status: 0 established, 1 wrong input, refuted or not inductive, 2 usage, 3 unknown, 4 a bug of ours");
+  app.footer(
+      "example: rondo prove examples/koord/lineform.koord\n\n"
+      "exit status: 0 established, 1 wrong input, refuted or not inductive, 2 usage, 3 unknown, 4 a bug of "
+      "ours");
   AddCheckVerb(app, status);
   AddFormatVerb(app, status);
   AddProveVerb(app, status);

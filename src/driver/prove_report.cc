@@ -1,8 +1,8 @@
 #include "driver/prove_report.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "diag/render.h"
@@ -14,11 +14,16 @@ using koord::Verdict;
 
 std::string_view VerdictName(Verdict verdict) {
   switch (verdict) {
-    case Verdict::kProved: return "proved";
-    case Verdict::kRefuted: return "refuted";
-    case Verdict::kNotInductive: return "not inductive";
-    case Verdict::kUnknown: return "unknown";
-    case Verdict::kConditional: return "conditional";
+    case Verdict::kProved:
+      return "proved";
+    case Verdict::kRefuted:
+      return "refuted";
+    case Verdict::kNotInductive:
+      return "not inductive";
+    case Verdict::kUnknown:
+      return "unknown";
+    case Verdict::kConditional:
+      return "conditional";
   }
   return "";
 }
@@ -33,16 +38,20 @@ std::string Count(size_t n, const char* what) { return fmt::format("{} {}{}", n,
 
 const char* Word(Outcome outcome) {
   switch (outcome) {
-    case Outcome::kProved: return "ok";
-    case Outcome::kFailed: return "FAIL";
-    case Outcome::kUnknown: return "?";
+    case Outcome::kProved:
+      return "ok";
+    case Outcome::kFailed:
+      return "FAIL";
+    case Outcome::kUnknown:
+      return "?";
   }
   return "";
 }
 
 }  // namespace
 
-std::string ProveHeader(const std::string& file, const koord::Report& report, const koord::ProveOptions& options, size_t cached) {
+std::string ProveHeader(const std::string& file, const koord::Report& report,
+                        const koord::ProveOptions& options, size_t cached) {
   std::string text = fmt::format("{}: {}, {}", file, Count(report.obligations, "obligation"), Scope(options));
   if (cached > 0) text += fmt::format(" ({} answers from the cache)", cached);
   return text + "\n";
@@ -71,20 +80,26 @@ std::string ProveTable(const koord::Report& report) {
 std::string ProveSummary(const koord::Report& report, const koord::ProveOptions& options, int status) {
   std::string text = "\n";
   const std::string scope = options.robots ? fmt::format("for N = {}", *options.robots) : "for every N";
-  for (const Verdict verdict : {Verdict::kProved, Verdict::kRefuted, Verdict::kNotInductive, Verdict::kConditional, Verdict::kUnknown}) {
+  for (const Verdict verdict : {Verdict::kProved, Verdict::kRefuted, Verdict::kNotInductive,
+                                Verdict::kConditional, Verdict::kUnknown}) {
     std::vector<std::string> names;
     for (const koord::Row& row : report.rows) {
       if (row.verdict != verdict) continue;
       names.push_back(row.because.empty() ? row.name : fmt::format("{} ({})", row.name, row.because));
     }
-    if (!names.empty()) text += fmt::format("{}{}: {}\n", VerdictName(verdict), verdict == Verdict::kProved ? " " + scope : "", fmt::join(names, ", "));
+    if (!names.empty())
+      text += fmt::format("{}{}: {}\n", VerdictName(verdict), verdict == Verdict::kProved ? " " + scope : "",
+                          fmt::join(names, ", "));
   }
   if (!report.assumed.empty()) text += fmt::format("assumed: {}\n", fmt::join(report.assumed, "; "));
   if (!report.unused.empty()) text += fmt::format("unused: {}\n", fmt::join(report.unused, "; "));
-  if (!report.unconstrained.empty()) text += fmt::format("functions that may return anything: {}\n", fmt::join(report.unconstrained, ", "));
+  if (!report.unconstrained.empty())
+    text += fmt::format("functions that may return anything: {}\n", fmt::join(report.unconstrained, ", "));
   if (options.cross_check != nullptr) {
-    text += fmt::format("cross-checked with {}: {} agree{}{}\n", options.cross_check->name(), Count(report.cross_checked, "obligation"),
-                        report.cross_checked == 1 ? "s" : "", report.cross_unknown > 0 ? fmt::format(", {} undecided there", report.cross_unknown) : "");
+    text += fmt::format(
+        "cross-checked with {}: {} agree{}{}\n", options.cross_check->name(),
+        Count(report.cross_checked, "obligation"), report.cross_checked == 1 ? "s" : "",
+        report.cross_unknown > 0 ? fmt::format(", {} undecided there", report.cross_unknown) : "");
   }
   if (report.interrupted) text += "interrupted: what is marked `?` was not decided\n";
   for (const std::string& problem : report.problems) text += fmt::format("could not write {}\n", problem);
@@ -92,9 +107,11 @@ std::string ProveSummary(const koord::Report& report, const koord::ProveOptions&
   return text;
 }
 
-nlohmann::json ProveJson(const Session& session, const std::string& file, const koord::Report* report, int status) {
+nlohmann::json ProveJson(const Session& session, const std::string& file, const koord::Report* report,
+                         int status) {
   nlohmann::json list = nlohmann::json::array();
-  for (const diag::Diagnostic& d : session.diagnostics.Sorted()) list.push_back(diag::RenderJson(session.sources, d));
+  for (const diag::Diagnostic& d : session.diagnostics.Sorted())
+    list.push_back(diag::RenderJson(session.sources, d));
   nlohmann::json json{{"command", "prove"}, {"file", file}, {"status", status}, {"diagnostics", list}};
   if (report == nullptr) return json;
   json["invariants"] = nlohmann::json::array();
@@ -102,7 +119,10 @@ nlohmann::json ProveJson(const Session& session, const std::string& file, const 
     nlohmann::json entry{{"name", row.name}, {"verdict", VerdictName(row.verdict)}};
     if (!row.because.empty()) entry["because"] = row.because;
     for (const koord::Cell& cell : row.cells) {
-      nlohmann::json c{{"case", cell.column}, {"outcome", Word(cell.outcome)}, {"seconds", cell.seconds}, {"used", cell.core}};
+      nlohmann::json c{{"case", cell.column},
+                       {"outcome", Word(cell.outcome)},
+                       {"seconds", cell.seconds},
+                       {"used", cell.core}};
       if (!cell.reason.empty()) c["reason"] = cell.reason;
       entry["obligations"].push_back(std::move(c));
     }

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <string>
-
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "driver/load.h"
 #include "koord/prove/prove.h"
@@ -10,15 +9,16 @@
 namespace rondo::driver {
 
 /// What was asked: file, number of obligations, scope.
-std::string ProveHeader(const std::string& file, const koord::Report& report, const koord::ProveOptions& options,
-                        size_t cached);
+std::string ProveHeader(const std::string& file, const koord::Report& report,
+                        const koord::ProveOptions& options, size_t cached);
 /// One line for each invariant, one word for each obligation.
 std::string ProveTable(const koord::Report& report);
 /// The verdict, what it rests on, and what to do next.
 std::string ProveSummary(const koord::Report& report, const koord::ProveOptions& options, int status);
 
 /// The same as data; `report` is nullptr when the program was not proved because of errors.
-nlohmann::json ProveJson(const Session& session, const std::string& file, const koord::Report* report, int status);
+nlohmann::json ProveJson(const Session& session, const std::string& file, const koord::Report* report,
+                         int status);
 
 std::string_view VerdictName(koord::Verdict verdict);
 

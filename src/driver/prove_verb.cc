@@ -1,5 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "driver/exit_status.h"
@@ -52,18 +53,26 @@ int Run(const Options& options) {
   const bool parsed = !session.diagnostics.has_errors();
   if (parsed) model = koord::Check(session.sources, *program, session.diagnostics);
   const auto finish_early = [&](int status) {
-    if (options.json) Print(ProveJson(session, options.file, nullptr, status).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-    else PrintDiagnostics(session.sources, session.diagnostics);
+    if (options.json)
+      Print(ProveJson(session, options.file, nullptr, status)
+                .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+            "\n");
+    else
+      PrintDiagnostics(session.sources, session.diagnostics);
     return status;
   };
   if (session.diagnostics.has_errors()) return finish_early(kRejected);
   if (model.invariants.empty()) {
-    session.diagnostics.Report(diag::Kind::kKoordNoInvariant, program->item_spans.back(), "there is nothing to prove")
-        .Help("state what must always hold: `invariant NAME: ...`, here or in the `.spec` file beside the program");
+    session.diagnostics
+        .Report(diag::Kind::kKoordNoInvariant, program->item_spans.back(), "there is nothing to prove")
+        .Help(
+            "state what must always hold: `invariant NAME: ...`, here or in the `.spec` file beside the "
+            "program");
     return finish_early(kRejected);
   }
   const solve::z3::Z3Solver z3;
-  const solve::cache::ProofCache cache(options.no_cache ? std::filesystem::path() : solve::cache::ProofCache::DefaultFolder());
+  const solve::cache::ProofCache cache(options.no_cache ? std::filesystem::path()
+                                                        : solve::cache::ProofCache::DefaultFolder());
   const solve::cache::CachingSolver caching(z3, cache);
   const solve::smtlib::SmtLibSolver other(options.cross_check);
   koord::ProveOptions prove = ToProveOptions(options);
@@ -81,7 +90,9 @@ int Run(const Options& options) {
   if (report.rows.empty()) return finish_early(kRejected);
   const int status = StatusOf(report);
   if (options.json) {
-    Print(ProveJson(session, options.file, &report, status).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    Print(ProveJson(session, options.file, &report, status)
+              .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+          "\n");
     return status;
   }
   Print(ProveHeader(options.file, report, prove, options.no_cache ? 0 : caching.hits()));
@@ -98,14 +109,18 @@ int Run(const Options& options) {
 
 void AddProveVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("prove", "prove the invariants of a Koord program for any number of robots");
+  CLI::App* verb =
+      app.add_subcommand("prove", "prove the invariants of a Koord program for any number of robots");
   verb->add_option("FILE", options->file, "the program; `NAME.spec` beside it belongs to it")->required();
   verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
-  verb->add_option("--robots", options->robots, "fix the number of robots; default: every N >= 1")->check(CLI::Range(int64_t{1}, int64_t{1'000'000}));
+  verb->add_option("--robots", options->robots, "fix the number of robots; default: every N >= 1")
+      ->check(CLI::Range(int64_t{1}, int64_t{1'000'000}));
   verb->add_option("--jobs", options->jobs, "threads; default: one for each core");
-  verb->add_option("--timeout", options->timeout, "seconds for each question to the solver; default: 10")->check(CLI::Range(0.001, 1e6));
+  verb->add_option("--timeout", options->timeout, "seconds for each question to the solver; default: 10")
+      ->check(CLI::Range(0.001, 1e6));
   verb->add_option("--smt-out", options->smt_out, "write every obligation as SMT-LIB 2 into this folder");
-  verb->add_option("--cross-check", options->cross_check, "decide every obligation again with this solver, such as cvc5");
+  verb->add_option("--cross-check", options->cross_check,
+                   "decide every obligation again with this solver, such as cvc5");
   verb->add_flag("--no-cache", options->no_cache, "neither use nor fill the proof cache");
   verb->add_flag("--json", options->json, "the verdicts as JSON on standard output");
   verb->footer(

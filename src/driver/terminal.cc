@@ -1,11 +1,10 @@
 #include "driver/terminal.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
-
-#include <fmt/format.h>
 
 namespace rondo::driver {
 
@@ -32,10 +31,15 @@ void PrintDiagnostics(const diag::SourceSet& sources, const diag::Diagnostics& d
     if (d.severity == diag::Severity::kError) ++errors;
     if (d.severity == diag::Severity::kWarning) ++warnings;
   }
-  const auto count = [](size_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); };
-  if (errors > 0 && warnings > 0) text += fmt::format("{}, {}\n", count(errors, "error"), count(warnings, "warning"));
-  else if (errors > 0) text += count(errors, "error") + "\n";
-  else if (warnings > 0) text += count(warnings, "warning") + "\n";
+  const auto count = [](size_t n, const char* what) {
+    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  };
+  if (errors > 0 && warnings > 0)
+    text += fmt::format("{}, {}\n", count(errors, "error"), count(warnings, "warning"));
+  else if (errors > 0)
+    text += count(errors, "error") + "\n";
+  else if (warnings > 0)
+    text += count(warnings, "warning") + "\n";
   PrintError(text);
 }
 

@@ -1,9 +1,8 @@
 #pragma once
 
+#include <CLI/App.hpp>
 #include <string>
 #include <vector>
-
-#include <CLI/App.hpp>
 
 /// The verbs of the command line. Each adds itself to the application and leaves its exit status in `status`.
 namespace rondo::driver {

@@ -35,9 +35,14 @@ SortId Arena::Record(std::string_view name, std::vector<std::string> fields, std
   CHECK(fields.size() == sorts.size() && !fields.empty());
   return AddSort({SortKind::kRecord, std::string(name), std::move(fields), std::move(sorts)});
 }
-SortId Arena::Opaque(std::string_view name) { return AddSort({SortKind::kOpaque, std::string(name), {}, {}}); }
+SortId Arena::Opaque(std::string_view name) {
+  return AddSort({SortKind::kOpaque, std::string(name), {}, {}});
+}
 SortId Arena::Array(SortId index, SortId element) {
-  return AddSort({SortKind::kArray, fmt::format("Array<{},{}>", sort(index).name, sort(element).name), {}, {index, element}});
+  return AddSort({SortKind::kArray,
+                  fmt::format("Array<{},{}>", sort(index).name, sort(element).name),
+                  {},
+                  {index, element}});
 }
 SortId Arena::List(SortId element) {
   return AddSort({SortKind::kList, fmt::format("List<{}>", sort(element).name), {}, {element}});
@@ -49,7 +54,8 @@ SymbolId Arena::Declare(std::string_view name, std::vector<SortId> parameters, S
   const auto it = symbol_names_.find(std::string(name));
   if (it != symbol_names_.end()) {
     const Symbol& old = symbol(it->second);
-    CHECK(old.parameters == parameters && old.result == result) << "two different symbols are called " << name;
+    CHECK(old.parameters == parameters && old.result == result)
+        << "two different symbols are called " << name;
     return it->second;
   }
   const SymbolId id(symbols_.size());
@@ -118,7 +124,8 @@ bool Arena::HasFreeBound(TermId id, std::span<const TermId> own) const {
 TermId Arena::Intern(Op op, SortId sort, uint32_t payload, std::span<const TermId> args) {
   const std::vector<TermId> copy(args.begin(), args.end());  // `args` may point into the pool
   const TermId candidate(terms_.size());
-  terms_.push_back({op, sort, payload, static_cast<uint32_t>(pool_.size()), static_cast<uint32_t>(copy.size())});
+  terms_.push_back(
+      {op, sort, payload, static_cast<uint32_t>(pool_.size()), static_cast<uint32_t>(copy.size())});
   pool_.insert(pool_.end(), copy.begin(), copy.end());
   const auto [it, fresh] = interned_.insert(candidate);
   if (!fresh) {
@@ -144,7 +151,8 @@ TermId Arena::Raw(Op op, SortId sort, uint32_t payload, std::vector<TermId> args
   return Intern(op, sort, payload, args);
 }
 
-TermId Arena::Fire(Rewrite rewrite, Op op, SortId sort, uint32_t payload, std::vector<TermId> args, TermId result) {
+TermId Arena::Fire(Rewrite rewrite, Op op, SortId sort, uint32_t payload, std::vector<TermId> args,
+                   TermId result) {
   if (observer) {
     const auto watch = std::exchange(observer, nullptr);
     watch(rewrite, Raw(op, sort, payload, std::move(args)), result);
@@ -158,37 +166,62 @@ TermId Arena::Rebuild(const Term& like, std::vector<TermId> args) {
     case Op::kBool:
     case Op::kNumber:
     case Op::kMember:
-    case Op::kVariable: return Intern(like.op, like.sort, like.payload, {});
-    case Op::kApply: return Apply(SymbolId(like.payload), std::move(args));
-    case Op::kNot: return Not(args[0]);
-    case Op::kAnd: return And(std::move(args));
-    case Op::kOr: return Or(std::move(args));
-    case Op::kEq: return Eq(args[0], args[1]);
-    case Op::kIte: return Ite(args[0], args[1], args[2]);
+    case Op::kVariable:
+      return Intern(like.op, like.sort, like.payload, {});
+    case Op::kApply:
+      return Apply(SymbolId(like.payload), std::move(args));
+    case Op::kNot:
+      return Not(args[0]);
+    case Op::kAnd:
+      return And(std::move(args));
+    case Op::kOr:
+      return Or(std::move(args));
+    case Op::kEq:
+      return Eq(args[0], args[1]);
+    case Op::kIte:
+      return Ite(args[0], args[1], args[2]);
     case Op::kForall:
     case Op::kExists: {
       const TermId body = args.back();
       args.pop_back();
       return Quantify(like.op, std::move(args), body);
     }
-    case Op::kAdd: return Add(std::move(args));
-    case Op::kMul: return Mul(args[0], args[1]);
-    case Op::kDivide: return Divide(args[0], args[1]);
-    case Op::kIntDiv: return IntDiv(args[0], args[1]);
-    case Op::kMod: return Mod(args[0], args[1]);
-    case Op::kLe: return Le(args[0], args[1]);
-    case Op::kLt: return Lt(args[0], args[1]);
-    case Op::kToReal: return ToReal(args[0]);
-    case Op::kSelect: return Select(args[0], args[1]);
-    case Op::kStore: return Store(args[0], args[1], args[2]);
-    case Op::kRecord: return MakeRecord(like.sort, std::move(args));
-    case Op::kField: return Field(args[0], like.payload);
-    case Op::kListMake: return MakeList(sort(like.sort).parts[0], std::move(args));
-    case Op::kListLength: return Length(args[0]);
-    case Op::kListAt: return At(args[0], args[1]);
-    case Op::kListAppend: return Append(args[0], args[1]);
-    case Op::kListRemove: return Remove(args[0], args[1]);
-    case Op::kListSet: return Set(args[0], args[1], args[2]);
+    case Op::kAdd:
+      return Add(std::move(args));
+    case Op::kMul:
+      return Mul(args[0], args[1]);
+    case Op::kDivide:
+      return Divide(args[0], args[1]);
+    case Op::kIntDiv:
+      return IntDiv(args[0], args[1]);
+    case Op::kMod:
+      return Mod(args[0], args[1]);
+    case Op::kLe:
+      return Le(args[0], args[1]);
+    case Op::kLt:
+      return Lt(args[0], args[1]);
+    case Op::kToReal:
+      return ToReal(args[0]);
+    case Op::kSelect:
+      return Select(args[0], args[1]);
+    case Op::kStore:
+      return Store(args[0], args[1], args[2]);
+    case Op::kRecord:
+      return MakeRecord(like.sort, std::move(args));
+    case Op::kField:
+      return Field(args[0], like.payload);
+    case Op::kListMake:
+      return MakeList(sort(like.sort).parts[0], std::move(args));
+    case Op::kListLength:
+      return Length(args[0]);
+    case Op::kListAt:
+      return At(args[0], args[1]);
+    case Op::kListAppend:
+      return Append(args[0], args[1]);
+    case Op::kListRemove:
+      return Remove(args[0], args[1]);
+    case Op::kListSet:
+      return Set(args[0], args[1], args[2]);
   }
   CHECK(false);
   return {};

@@ -47,8 +47,8 @@ struct Term {
 
 /// Owns sorts, symbols and terms. Equal terms have equal ids. Building is single-threaded; reading is not.
 ///
-/// The constructors simplify. Each simplification is a named `Rewrite`, and the test `rewrites` has a solver prove
-/// that each preserves meaning. Constructors CHECK sorts: an ill-sorted term is a bug of the caller.
+/// The constructors simplify. Each simplification is a named `Rewrite`, and the test `rewrites` has a solver
+/// prove that each preserves meaning. Constructors CHECK sorts: an ill-sorted term is a bug of the caller.
 class Arena {
  public:
   Arena();
@@ -119,7 +119,7 @@ class Arena {
   TermId Field(TermId record, uint32_t field);
   TermId MakeList(SortId element, std::vector<TermId> items);
   TermId Length(TermId list);
-  TermId At(TermId list, TermId index);       ///< some element when the index is out of range
+  TermId At(TermId list, TermId index);  ///< some element when the index is out of range
   TermId Append(TermId list, TermId element);
   TermId Remove(TermId list, TermId element);  ///< without its first occurrence; unchanged if there is none
 

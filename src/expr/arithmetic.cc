@@ -16,7 +16,9 @@ struct Linear {
 
 void Accumulate(const Arena& arena, TermId t, const Rational& factor, Linear& sum) {
   switch (arena.op(t)) {
-    case Op::kNumber: sum.constant = sum.constant + factor * arena.number(t); return;
+    case Op::kNumber:
+      sum.constant = sum.constant + factor * arena.number(t);
+      return;
     case Op::kAdd:
       for (const TermId arg : arena.args(t)) Accumulate(arena, arg, factor, sum);
       return;
@@ -26,7 +28,8 @@ void Accumulate(const Arena& arena, TermId t, const Rational& factor, Linear& su
         return;
       }
       break;
-    default: break;  // any other operator is one term of the sum
+    default:
+      break;  // any other operator is one term of the sum
   }
   Rational& coefficient = sum.coefficients[t];
   coefficient = coefficient + factor;
@@ -37,7 +40,9 @@ void Accumulate(const Arena& arena, TermId t, const Rational& factor, Linear& su
 // Builds no terms: comparisons are made far more often than they can be decided here.
 std::optional<Rational> Arena::ConstantDistance(TermId a, TermId b) const {
   if (a == b) return Rational(0);
-  const auto composed = [&](TermId t) { return op(t) == Op::kNumber || op(t) == Op::kAdd || op(t) == Op::kMul; };
+  const auto composed = [&](TermId t) {
+    return op(t) == Op::kNumber || op(t) == Op::kAdd || op(t) == Op::kMul;
+  };
   if (!composed(a) && !composed(b)) return std::nullopt;
   Linear sum;
   Accumulate(*this, a, Rational(1), sum);
@@ -60,7 +65,8 @@ TermId Arena::Add(std::vector<TermId> args) {
   if (!sum.constant.IsZero()) parts.push_back(Number(s, sum.constant));
   for (const auto& [t, coefficient] : sum.coefficients) {
     if (coefficient.IsZero()) continue;
-    parts.push_back(coefficient == Rational(1) ? t : Intern(Op::kMul, s, 0, std::vector{Number(s, coefficient), t}));
+    parts.push_back(
+        coefficient == Rational(1) ? t : Intern(Op::kMul, s, 0, std::vector{Number(s, coefficient), t}));
   }
   TermId result;
   if (parts.empty()) {
@@ -79,7 +85,9 @@ TermId Arena::Neg(TermId a) { return Mul(Number(sort_of(a), Rational(-1)), a); }
 TermId Arena::Mul(TermId a, TermId b) {
   const SortId s = sort_of(a);
   CHECK(s == sort_of(b) && (s == int_ || s == real_));
-  const auto fire = [&](Rewrite rewrite, TermId result) { return Fire(rewrite, Op::kMul, s, 0, {a, b}, result); };
+  const auto fire = [&](Rewrite rewrite, TermId result) {
+    return Fire(rewrite, Op::kMul, s, 0, {a, b}, result);
+  };
   if (IsNumber(a) && IsNumber(b)) return fire(Rewrite::kMulConstants, Number(s, number(a) * number(b)));
   if (IsNumber(b)) return fire(Rewrite::kMulOrder, Mul(b, a));
   if (IsNumber(a)) {
@@ -89,7 +97,8 @@ TermId Arena::Mul(TermId a, TermId b) {
       Linear sum;
       Accumulate(*this, b, number(a), sum);
       std::vector<TermId> parts{Number(s, sum.constant)};
-      for (const auto& [t, c] : sum.coefficients) parts.push_back(Intern(Op::kMul, s, 0, std::vector{Number(s, c), t}));
+      for (const auto& [t, c] : sum.coefficients)
+        parts.push_back(Intern(Op::kMul, s, 0, std::vector{Number(s, c), t}));
       return fire(Rewrite::kMulDistribute, Add(std::move(parts)));
     }
     return Intern(Op::kMul, s, 0, std::vector{a, b});

@@ -9,7 +9,8 @@ namespace rondo::expr {
 TermId Arena::Apply(SymbolId function, std::vector<TermId> args) {
   const Symbol& f = symbol(function);
   CHECK(f.parameters.size() == args.size()) << f.name;
-  for (size_t i = 0; i < args.size(); ++i) CHECK(sort_of(args[i]) == f.parameters[i]) << f.name << " argument " << i;
+  for (size_t i = 0; i < args.size(); ++i)
+    CHECK(sort_of(args[i]) == f.parameters[i]) << f.name << " argument " << i;
   if (args.empty()) return Variable(function);
   return Intern(Op::kApply, f.result, function.value, args);
 }
@@ -43,8 +44,8 @@ TermId Arena::MakeRecord(SortId s, std::vector<TermId> fields) {
   CHECK(record.kind == SortKind::kRecord && record.parts.size() == fields.size());
   for (size_t i = 0; i < fields.size(); ++i) CHECK(sort_of(fields[i]) == record.parts[i]) << record.name;
   const auto projects = [&](size_t i) {
-    return op(fields[i]) == Op::kField && term(fields[i]).payload == i && arg(fields[i], 0) == arg(fields[0], 0) &&
-           sort_of(arg(fields[i], 0)) == s;
+    return op(fields[i]) == Op::kField && term(fields[i]).payload == i &&
+           arg(fields[i], 0) == arg(fields[0], 0) && sort_of(arg(fields[i], 0)) == s;
   };
   bool same = op(fields[0]) == Op::kField;
   for (size_t i = 0; same && i < fields.size(); ++i) same = projects(i);
@@ -80,7 +81,8 @@ TermId Arena::MakeList(SortId element, std::vector<TermId> items) {
 TermId Arena::Length(TermId list) {
   CHECK(sort(sort_of(list)).kind == SortKind::kList);
   if (op(list) == Op::kListMake) {
-    return Fire(Rewrite::kLengthMake, Op::kListLength, int_, 0, {list}, IntNumber(static_cast<int64_t>(args(list).size())));
+    return Fire(Rewrite::kLengthMake, Op::kListLength, int_, 0, {list},
+                IntNumber(static_cast<int64_t>(args(list).size())));
   }
   return Intern(Op::kListLength, int_, 0, std::vector{list});
 }

@@ -35,12 +35,12 @@ TermId AxiomOfRemove(Arena& arena, TermId t) {
   const TermId place = arena.FreshConstant("place", arena.Int());
   const TermId found = arena.Lt(place, length);
   const TermId shorter = arena.Sub(length, arena.IntNumber(1));
-  return arena.And(
-      {arena.Le(zero, place), arena.Le(place, length), absent_below(place),
-       arena.Implies(found, arena.And({arena.Eq(arena.At(list, place), element), arena.Eq(arena.Length(t), shorter),
-                                       Copies(arena, t, list, zero, place, 0),
-                                       Copies(arena, t, list, place, shorter, 1)})),
-       arena.Implies(arena.Not(found), arena.Eq(t, list))});
+  return arena.And({arena.Le(zero, place), arena.Le(place, length), absent_below(place),
+                    arena.Implies(found, arena.And({arena.Eq(arena.At(list, place), element),
+                                                    arena.Eq(arena.Length(t), shorter),
+                                                    Copies(arena, t, list, zero, place, 0),
+                                                    Copies(arena, t, list, place, shorter, 1)})),
+                    arena.Implies(arena.Not(found), arena.Eq(t, list))});
 }
 
 TermId AxiomOfSet(Arena& arena, TermId t) {
@@ -49,9 +49,10 @@ TermId AxiomOfSet(Arena& arena, TermId t) {
   const TermId length = arena.Length(list);
   const TermId zero = arena.IntNumber(0);
   const TermId inside = arena.And(arena.Le(zero, index), arena.Lt(index, length));
-  const TermId changed = arena.And({arena.Eq(arena.Length(t), length), arena.Eq(arena.At(t, index), arena.arg(t, 2)),
-                                    Copies(arena, t, list, zero, index, 0),
-                                    Copies(arena, t, list, arena.Add(index, arena.IntNumber(1)), length, 0)});
+  const TermId changed =
+      arena.And({arena.Eq(arena.Length(t), length), arena.Eq(arena.At(t, index), arena.arg(t, 2)),
+                 Copies(arena, t, list, zero, index, 0),
+                 Copies(arena, t, list, arena.Add(index, arena.IntNumber(1)), length, 0)});
   return arena.And(arena.Implies(inside, changed), arena.Implies(arena.Not(inside), arena.Eq(t, list)));
 }
 
@@ -61,7 +62,8 @@ TermId AxiomOfLiteral(Arena& arena, TermId t) {
   const std::vector<TermId> items(arena.args(t).begin(), arena.args(t).end());
   std::vector<TermId> facts;
   const TermId length = arena.Raw(Op::kListLength, arena.Int(), 0, {t});
-  facts.push_back(arena.Raw(Op::kEq, arena.Bool(), 0, {length, arena.IntNumber(static_cast<int64_t>(items.size()))}));
+  facts.push_back(
+      arena.Raw(Op::kEq, arena.Bool(), 0, {length, arena.IntNumber(static_cast<int64_t>(items.size()))}));
   for (size_t i = 0; i < items.size(); ++i) {
     const TermId at = arena.Raw(Op::kListAt, element, 0, {t, arena.IntNumber(static_cast<int64_t>(i))});
     facts.push_back(arena.Raw(Op::kEq, arena.Bool(), 0, {at, items[i]}));
@@ -81,7 +83,8 @@ TermId Extensionality(Arena& arena, TermId equation) {
 
 }  // namespace
 
-std::vector<TermId> ListAxioms(Arena& arena, std::span<const TermId> formulas, std::unordered_set<TermId>& done) {
+std::vector<TermId> ListAxioms(Arena& arena, std::span<const TermId> formulas,
+                               std::unordered_set<TermId>& done) {
   std::unordered_set<TermId> seen;
   std::vector<TermId> lists;
   std::vector<TermId> equations;
@@ -90,7 +93,8 @@ std::vector<TermId> ListAxioms(Arena& arena, std::span<const TermId> formulas, s
       if (arena.sort(arena.sort_of(t)).kind == SortKind::kList && !arena.IsOpen(t) && done.insert(t).second) {
         lists.push_back(t);
       }
-      const bool equation = arena.op(t) == Op::kEq && arena.sort(arena.sort_of(arena.arg(t, 0))).kind == SortKind::kList;
+      const bool equation =
+          arena.op(t) == Op::kEq && arena.sort(arena.sort_of(arena.arg(t, 0))).kind == SortKind::kList;
       if (equation && !arena.IsOpen(t) && done.insert(t).second) equations.push_back(t);
     });
   }
@@ -98,11 +102,21 @@ std::vector<TermId> ListAxioms(Arena& arena, std::span<const TermId> formulas, s
   for (const TermId equation : equations) axioms.push_back(Extensionality(arena, equation));
   for (const TermId t : lists) {
     switch (arena.op(t)) {
-      case Op::kListMake: axioms.push_back(AxiomOfLiteral(arena, t)); break;
-      case Op::kListAppend: axioms.push_back(AxiomOfAppend(arena, t)); break;
-      case Op::kListRemove: axioms.push_back(AxiomOfRemove(arena, t)); break;
-      case Op::kListSet: axioms.push_back(AxiomOfSet(arena, t)); break;
-      default: axioms.push_back(arena.Le(arena.IntNumber(0), arena.Length(t))); break;  // any list
+      case Op::kListMake:
+        axioms.push_back(AxiomOfLiteral(arena, t));
+        break;
+      case Op::kListAppend:
+        axioms.push_back(AxiomOfAppend(arena, t));
+        break;
+      case Op::kListRemove:
+        axioms.push_back(AxiomOfRemove(arena, t));
+        break;
+      case Op::kListSet:
+        axioms.push_back(AxiomOfSet(arena, t));
+        break;
+      default:
+        axioms.push_back(arena.Le(arena.IntNumber(0), arena.Length(t)));
+        break;  // any list
     }
   }
   return axioms;

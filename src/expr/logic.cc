@@ -8,8 +8,8 @@ namespace rondo::expr {
 
 TermId Arena::Number(SortId sort, const Rational& value) {
   CHECK(sort == real_ || (sort == int_ && value.IsInteger())) << value.ToString();
-  const auto [it, fresh] =
-      number_ids_.emplace(value.Numerator() + "/" + value.Denominator(), static_cast<uint32_t>(numbers_.size()));
+  const auto [it, fresh] = number_ids_.emplace(value.Numerator() + "/" + value.Denominator(),
+                                               static_cast<uint32_t>(numbers_.size()));
   if (fresh) numbers_.push_back(value);
   return Intern(Op::kNumber, sort, it->second, {});
 }
@@ -26,13 +26,20 @@ TermId Arena::Variable(SymbolId id) {
 
 TermId Arena::Not(TermId a) {
   CHECK(sort_of(a) == bool_);
-  const auto fire = [&](Rewrite rewrite, TermId result) { return Fire(rewrite, Op::kNot, bool_, 0, {a}, result); };
+  const auto fire = [&](Rewrite rewrite, TermId result) {
+    return Fire(rewrite, Op::kNot, bool_, 0, {a}, result);
+  };
   switch (op(a)) {
-    case Op::kBool: return fire(Rewrite::kNotConstant, a == true_ ? false_ : true_);
-    case Op::kNot: return fire(Rewrite::kNotNot, arg(a, 0));
-    case Op::kLe: return fire(Rewrite::kNotComparison, Lt(arg(a, 1), arg(a, 0)));
-    case Op::kLt: return fire(Rewrite::kNotComparison, Le(arg(a, 1), arg(a, 0)));
-    default: return Intern(Op::kNot, bool_, 0, std::vector{a});  // every other operator: nothing to simplify
+    case Op::kBool:
+      return fire(Rewrite::kNotConstant, a == true_ ? false_ : true_);
+    case Op::kNot:
+      return fire(Rewrite::kNotNot, arg(a, 0));
+    case Op::kLe:
+      return fire(Rewrite::kNotComparison, Lt(arg(a, 1), arg(a, 0)));
+    case Op::kLt:
+      return fire(Rewrite::kNotComparison, Le(arg(a, 1), arg(a, 0)));
+    default:
+      return Intern(Op::kNot, bool_, 0, std::vector{a});  // every other operator: nothing to simplify
   }
 }
 
@@ -91,7 +98,9 @@ TermId Arena::Junction(Op op, std::vector<TermId> args) {
 
 TermId Arena::Eq(TermId a, TermId b) {
   CHECK(sort_of(a) == sort_of(b)) << sort(sort_of(a)).name << " = " << sort(sort_of(b)).name;
-  const auto fire = [&](Rewrite rewrite, TermId result) { return Fire(rewrite, Op::kEq, bool_, 0, {a, b}, result); };
+  const auto fire = [&](Rewrite rewrite, TermId result) {
+    return Fire(rewrite, Op::kEq, bool_, 0, {a, b}, result);
+  };
   if (a == b) return fire(Rewrite::kEqReflexive, true_);
   const bool constants = (op(a) == Op::kNumber || op(a) == Op::kMember) && op(a) == op(b);
   if (constants) return fire(Rewrite::kEqConstants, false_);
@@ -107,7 +116,8 @@ TermId Arena::Eq(TermId a, TermId b) {
     return fire(Rewrite::kEqRecords, And(std::move(fields)));
   }
   if (sort_of(a) == int_ || sort_of(a) == real_) {
-    if (const auto distance = ConstantDistance(a, b)) return fire(Rewrite::kEqDistance, Constant(distance->IsZero()));
+    if (const auto distance = ConstantDistance(a, b))
+      return fire(Rewrite::kEqDistance, Constant(distance->IsZero()));
   }
   if (b < a) return fire(Rewrite::kEqOrder, Intern(Op::kEq, bool_, 0, std::vector{b, a}));
   return Intern(Op::kEq, bool_, 0, std::vector{a, b});
@@ -116,7 +126,9 @@ TermId Arena::Eq(TermId a, TermId b) {
 TermId Arena::Ite(TermId c, TermId a, TermId b) {
   CHECK(sort_of(c) == bool_ && sort_of(a) == sort_of(b));
   const SortId s = sort_of(a);
-  const auto fire = [&](Rewrite rewrite, TermId result) { return Fire(rewrite, Op::kIte, s, 0, {c, a, b}, result); };
+  const auto fire = [&](Rewrite rewrite, TermId result) {
+    return Fire(rewrite, Op::kIte, s, 0, {c, a, b}, result);
+  };
   if (op(c) == Op::kBool) return fire(Rewrite::kIteConstant, c == true_ ? a : b);
   if (a == b) return fire(Rewrite::kIteSame, a);
   if (op(c) == Op::kNot) return fire(Rewrite::kIteNot, Ite(arg(c, 0), b, a));
@@ -144,8 +156,8 @@ TermId Arena::Quantify(Op op, std::vector<TermId> variables, TermId body) {
   // No sort is empty, so a quantifier whose variables do not occur says what its body says.
   if (variables.empty() || !IsOpen(body)) {
     return variables.empty() ? body
-                             : Fire(Rewrite::kQuantifierUnused, op, bool_, static_cast<uint32_t>(variables.size()),
-                                    std::move(all), body);
+                             : Fire(Rewrite::kQuantifierUnused, op, bool_,
+                                    static_cast<uint32_t>(variables.size()), std::move(all), body);
   }
   return Intern(op, bool_, static_cast<uint32_t>(variables.size()), all);
 }

@@ -68,10 +68,10 @@ enum class Rewrite : uint8_t {
   kModConstants,
   kCompareDistance,  // a <= a + 1  ->  true
   kToRealConstant,
-  kSelectStore,  // store(a, i, v)[j]  ->  if i = j then v else a[j]
-  kStoreStore,   // store(store(a, i, v), i, w)  ->  store(a, i, w)
-  kFieldRecord,  // (a, b).0  ->  a
-  kFieldIte,     // (if c then r else s).0  ->  if c then r.0 else s.0
+  kSelectStore,   // store(a, i, v)[j]  ->  if i = j then v else a[j]
+  kStoreStore,    // store(store(a, i, v), i, w)  ->  store(a, i, w)
+  kFieldRecord,   // (a, b).0  ->  a
+  kFieldIte,      // (if c then r else s).0  ->  if c then r.0 else s.0
   kRecordFields,  // (r.0, r.1)  ->  r
   kLengthMake,
   kAtMake,

@@ -74,7 +74,8 @@ std::optional<Rational> Rational::Parse(std::string_view text) {
   } else if (i < text.size() && text[i] == '/' && !fraction) {
     denominator = text.substr(i + 1);
     i = text.size();
-    if (denominator.empty() || denominator.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
+    if (denominator.empty() || denominator.find_first_not_of("0123456789") != std::string::npos)
+      return std::nullopt;
   }
   if (i != text.size()) return std::nullopt;
   auto impl = std::make_unique<Impl>();
@@ -105,7 +106,9 @@ Rational operator/(const Rational& a, const Rational& b) {
   return Rational(std::make_unique<Rational::Impl>(Rational::Impl{a.impl_->value / b.impl_->value}));
 }
 bool operator==(const Rational& a, const Rational& b) { return a.impl_->value == b.impl_->value; }
-std::strong_ordering operator<=>(const Rational& a, const Rational& b) { return cmp(a.impl_->value, b.impl_->value) <=> 0; }
+std::strong_ordering operator<=>(const Rational& a, const Rational& b) {
+  return cmp(a.impl_->value, b.impl_->value) <=> 0;
+}
 
 bool Rational::IsZero() const { return impl_->value == 0; }
 bool Rational::IsInteger() const { return impl_->value.get_den() == 1; }

@@ -18,8 +18,8 @@ class Rational {
   Rational& operator=(Rational other) noexcept;
   ~Rational();
 
-  /// Reads `12`, `1.5`, `.5`, `5.`, `1e-3`, `-2/3` exactly. nullopt for anything else, for a zero denominator, and for
-  /// exponents beyond +-400, which would only exhaust memory.
+  /// Reads `12`, `1.5`, `.5`, `5.`, `1e-3`, `-2/3` exactly. nullopt for anything else, for a zero
+  /// denominator, and for exponents beyond +-400, which would only exhaust memory.
   static std::optional<Rational> Parse(std::string_view text);
 
   friend Rational operator+(const Rational& a, const Rational& b);

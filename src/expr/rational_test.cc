@@ -17,7 +17,8 @@ TEST(Rational, ParsesEveryForm) {
 }
 
 TEST(Rational, RejectsTheRest) {
-  for (const char* text : {"", "-", ".", "1..2", "1e", "1e+", "1e401", "1/0", "1/", "1.5/2", "x", "1 ", "0x1"}) {
+  for (const char* text :
+       {"", "-", ".", "1..2", "1e", "1e+", "1e401", "1/0", "1/", "1.5/2", "x", "1 ", "0x1"}) {
     EXPECT_FALSE(Rational::Parse(text).has_value()) << text;
   }
 }

@@ -8,9 +8,10 @@ namespace rondo::expr {
 namespace {
 
 std::string Quote(std::string_view name) {
-  const bool plain = !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
-                     name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") ==
-                         std::string_view::npos;
+  const bool plain =
+      !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
+      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") ==
+          std::string_view::npos;
   return plain ? std::string(name) : fmt::format("|{}|", name);
 }
 
@@ -32,7 +33,8 @@ class Printer {
 
   std::string SortName(SortId id) const {
     const Sort& s = arena_.sort(id);
-    if (s.kind == SortKind::kArray) return fmt::format("(Array {} {})", SortName(s.parts[0]), SortName(s.parts[1]));
+    if (s.kind == SortKind::kArray)
+      return fmt::format("(Array {} {})", SortName(s.parts[0]), SortName(s.parts[1]));
     if (s.kind == SortKind::kBool || s.kind == SortKind::kInt || s.kind == SortKind::kReal) return s.name;
     return Quote("sort " + s.name);
   }
@@ -56,14 +58,18 @@ class Printer {
       return text + ")";
     };
     switch (term.op) {
-      case Op::kBool: return t == arena_.True() ? "true" : "false";
-      case Op::kNumber: return NumberText(arena_, t);
+      case Op::kBool:
+        return t == arena_.True() ? "true" : "false";
+      case Op::kNumber:
+        return NumberText(arena_, t);
       case Op::kMember: {
         const Sort& s = arena_.sort(term.sort);
         return Quote(fmt::format("{}.{}", s.name, s.names[term.payload]));
       }
-      case Op::kVariable: return Quote(arena_.symbol(SymbolId(term.payload)).name);
-      case Op::kApply: return call(Quote(arena_.symbol(SymbolId(term.payload)).name));
+      case Op::kVariable:
+        return Quote(arena_.symbol(SymbolId(term.payload)).name);
+      case Op::kApply:
+        return call(Quote(arena_.symbol(SymbolId(term.payload)).name));
       case Op::kNot:
       case Op::kAnd:
       case Op::kOr:
@@ -78,17 +84,21 @@ class Printer {
       case Op::kLt:
       case Op::kToReal:
       case Op::kSelect:
-      case Op::kStore: return call(Name(term.op));
+      case Op::kStore:
+        return call(Name(term.op));
       case Op::kForall:
       case Op::kExists: {
         std::string text = fmt::format("({} (", Name(term.op));
         for (size_t i = 0; i < term.payload; ++i) {
-          text += fmt::format("{}({} {})", i == 0 ? "" : " ", Print(args[i]), SortName(arena_.sort_of(args[i])));
+          text +=
+              fmt::format("{}({} {})", i == 0 ? "" : " ", Print(args[i]), SortName(arena_.sort_of(args[i])));
         }
         return text + fmt::format(") {})", Print(args.back()));
       }
-      case Op::kRecord: return call(Quote("make " + arena_.sort(term.sort).name));
-      case Op::kField: return call(FieldName(arena_.sort_of(args[0]), term.payload));
+      case Op::kRecord:
+        return call(Quote("make " + arena_.sort(term.sort).name));
+      case Op::kField:
+        return call(FieldName(arena_.sort_of(args[0]), term.payload));
       case Op::kListMake: {
         const std::string name = Quote(ListFunctionName(arena_, term.op, term.sort, args.size()));
         return args.empty() ? name : call(name);
@@ -128,18 +138,24 @@ class Declarations {
     };
     switch (term.op) {
       case Op::kListMake:
-        list_function(term.sort, std::vector<SortId>(args.size(), arena_.sort(term.sort).parts[0]), term.sort);
+        list_function(term.sort, std::vector<SortId>(args.size(), arena_.sort(term.sort).parts[0]),
+                      term.sort);
         break;
-      case Op::kListLength: list_function(arena_.sort_of(args[0]), {arena_.sort_of(args[0])}, arena_.Int()); break;
+      case Op::kListLength:
+        list_function(arena_.sort_of(args[0]), {arena_.sort_of(args[0])}, arena_.Int());
+        break;
       case Op::kListAt:
         list_function(arena_.sort_of(args[0]), {arena_.sort_of(args[0]), arena_.Int()}, term.sort);
         break;
       case Op::kListAppend:
-      case Op::kListRemove: list_function(term.sort, {term.sort, arena_.sort_of(args[1])}, term.sort); break;
+      case Op::kListRemove:
+        list_function(term.sort, {term.sort, arena_.sort_of(args[1])}, term.sort);
+        break;
       case Op::kListSet:
         list_function(term.sort, {term.sort, arena_.Int(), arena_.sort_of(args[2])}, term.sort);
         break;
-      default: break;  // interpreted by the solver
+      default:
+        break;  // interpreted by the solver
     }
   }
 
@@ -155,10 +171,12 @@ class Declarations {
       case SortKind::kBool:
       case SortKind::kInt:
       case SortKind::kReal:
-      case SortKind::kArray: break;
+      case SortKind::kArray:
+        break;
       case SortKind::kEnum: {
         std::string members;
-        for (const std::string& member : s.names) members += fmt::format(" ({})", Quote(s.name + "." + member));
+        for (const std::string& member : s.names)
+          members += fmt::format(" ({})", Quote(s.name + "." + member));
         text_ += fmt::format("(declare-datatypes (({} 0)) (({})))\n", name, members.substr(1));
         break;
       }
@@ -167,11 +185,14 @@ class Declarations {
         for (uint32_t i = 0; i < s.parts.size(); ++i) {
           fields += fmt::format(" ({} {})", printer_.FieldName(id, i), printer_.SortName(s.parts[i]));
         }
-        text_ += fmt::format("(declare-datatypes (({} 0)) ((({}{}))))\n", name, Quote("make " + s.name), fields);
+        text_ +=
+            fmt::format("(declare-datatypes (({} 0)) ((({}{}))))\n", name, Quote("make " + s.name), fields);
         break;
       }
       case SortKind::kList:
-      case SortKind::kOpaque: text_ += fmt::format("(declare-sort {} 0)\n", name); break;
+      case SortKind::kOpaque:
+        text_ += fmt::format("(declare-sort {} 0)\n", name);
+        break;
     }
   }
 
@@ -225,7 +246,8 @@ std::string ToSmtLib(const Arena& arena, std::span<const SmtAssertion> assertion
     for (const TermId t : needed) {
       if (arena.args(t).empty() || uses[t] < 2 || arena.IsOpen(t) || !defined.insert(t).second) continue;
       const std::string name = fmt::format("$t{}", serial++);
-      body += fmt::format("(define-fun {} () {} {})\n", name, printer.SortName(arena.sort_of(t)), printer.Print(t, true));
+      body += fmt::format("(define-fun {} () {} {})\n", name, printer.SortName(arena.sort_of(t)),
+                          printer.Print(t, true));
       printer.Define(t, name);
     }
     if (!assertion.comment.empty()) body += fmt::format("; {}\n", assertion.comment);

@@ -9,9 +9,10 @@ namespace rondo::expr {
 
 using Substitution = std::unordered_map<TermId, TermId>;
 
-/// `term` with each occurrence of a key of `map` replaced by its value, at once, rebuilt through the simplifying
-/// constructors. Capture cannot happen as long as values are closed or bind no variable of a quantifier inside `term`:
-/// every quantifier has variables of its own. Cost: linear in the number of distinct subterms.
+/// `term` with each occurrence of a key of `map` replaced by its value, at once, rebuilt through the
+/// simplifying constructors. Capture cannot happen as long as values are closed or bind no variable of a
+/// quantifier inside `term`: every quantifier has variables of its own. Cost: linear in the number of
+/// distinct subterms.
 TermId Substitute(Arena& arena, TermId term, const Substitution& map);
 
 /// Rebuilds `term` bottom up; `change` sees each rebuilt subterm and returns it or a replacement.

@@ -1,9 +1,9 @@
 #include "lang/expr_parser.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-
-#include <fmt/format.h>
 
 namespace rondo::lang {
 
@@ -20,7 +20,8 @@ class ExprParser::Depth {
   bool TooDeep() {
     if (parser_.depth_ <= kDeepest) return false;
     if (!parser_.failed_) {
-      parser_.diagnostics_.Report(Kind::kSyntaxNesting, parser_.Peek().span, "this expression is nested too deeply")
+      parser_.diagnostics_
+          .Report(Kind::kSyntaxNesting, parser_.Peek().span, "this expression is nested too deeply")
           .Under(fmt::format("more than {} levels", kDeepest));
       parser_.failed_ = true;
     }
@@ -57,7 +58,8 @@ diag::Diagnostic& ExprParser::Unexpected(std::string_view expected) {
   Span span = Peek().span;
   // The end of a line is shown right behind what stands before it.
   if (span.begin == span.end && at_ > 0) span = {span.file, PreviousSpan().end, PreviousSpan().end};
-  return diagnostics_.Report(Kind::kSyntaxUnexpected, span, fmt::format("{} where {} should be", Describe(Peek()), expected));
+  return diagnostics_.Report(Kind::kSyntaxUnexpected, span,
+                             fmt::format("{} where {} should be", Describe(Peek()), expected));
 }
 
 bool ExprParser::Expect(std::string_view text, std::string_view after) {
@@ -70,7 +72,9 @@ std::string ExprParser::ExpectName(std::string_view what) {
   if (AtKind(TokenKind::kName) && !IsReserved(Peek().text)) return std::string(Take().text);
   if (AtKind(TokenKind::kName) && !failed_) {
     failed_ = true;
-    diagnostics_.Report(Kind::kKoordReservedName, Peek().span, fmt::format("`{}` is a word of the language", Peek().text))
+    diagnostics_
+        .Report(Kind::kKoordReservedName, Peek().span,
+                fmt::format("`{}` is a word of the language", Peek().text))
         .Under(fmt::format("cannot be {}", what));
     return {};
   }
@@ -127,8 +131,10 @@ bool ExprParser::ParseBinder(Binder& binder) {
     return !failed_;
   }
   if (!Expect("in", "the variables of a quantifier")) return false;
-  static constexpr std::array<std::string_view, 8> kTypeWords = {"List", "Queue", "Map", "Set", "list", "queue", "map", "set"};
-  if (AtKind(TokenKind::kName) && std::find(kTypeWords.begin(), kTypeWords.end(), Peek().text) != kTypeWords.end() &&
+  static constexpr std::array<std::string_view, 8> kTypeWords = {"List", "Queue", "Map", "Set",
+                                                                 "list", "queue", "map", "set"};
+  if (AtKind(TokenKind::kName) &&
+      std::find(kTypeWords.begin(), kTypeWords.end(), Peek().text) != kTypeWords.end() &&
       (Peek(1).text == "<" || Peek(1).text == "(")) {
     binder.type = ParseType();
   } else {
@@ -235,7 +241,8 @@ ExprId ExprParser::ParsePostfix() {
     if (At(".") && Peek(1).kind == TokenKind::kName) {
       Take();
       const Token& member = Take();
-      base = pool_.Add({ExprKind::kField, pool_[base].span.To(member.span), std::string(member.text), {base}, {}});
+      base = pool_.Add(
+          {ExprKind::kField, pool_[base].span.To(member.span), std::string(member.text), {base}, {}});
     } else if (At("[")) {
       Take();
       const ExprId index = ParseExpr();
@@ -271,7 +278,9 @@ ExprId ExprParser::ParsePrimary() {
       const ExprKind kind = token.kind == TokenKind::kInt ? ExprKind::kInt : ExprKind::kFloat;
       return pool_.Add({kind, token.span, std::string(token.text), {}, {}});
     }
-    case TokenKind::kString: Take(); return pool_.Add({ExprKind::kString, token.span, std::string(token.text), {}, {}});
+    case TokenKind::kString:
+      Take();
+      return pool_.Add({ExprKind::kString, token.span, std::string(token.text), {}, {}});
     case TokenKind::kName: {
       if (token.text == "true" || token.text == "True") {
         Take();
@@ -314,7 +323,8 @@ ExprId ExprParser::ParsePrimary() {
     case TokenKind::kEnd:
     case TokenKind::kNewline:
     case TokenKind::kIndent:
-    case TokenKind::kDedent: break;
+    case TokenKind::kDedent:
+      break;
   }
   Unexpected("a value");
   return Fail(token.span);

@@ -10,8 +10,9 @@ namespace rondo::lang {
 
 /// A cursor over tokens with the expression and type grammar. Languages derive their parsers from it.
 ///
-/// Binding, from loose to tight: `forall`/`exists`; `implies` (to the right); `or`; `and`; `not`; one comparison or
-/// `in`; `+ -`; `* / %`; unary `-`; `.name`, `[index]`, `(arguments)`. So `not a == b` is `not (a == b)`.
+/// Binding, from loose to tight: `forall`/`exists`; `implies` (to the right); `or`; `and`; `not`; one
+/// comparison or `in`; `+ -`; `* / %`; unary `-`; `.name`, `[index]`, `(arguments)`. So `not a == b` is `not
+/// (a == b)`.
 class ExprParser {
  public:
   ExprParser(const TokenStream& stream, ExprPool& pool, diag::Diagnostics& diagnostics)

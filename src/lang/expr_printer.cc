@@ -6,12 +6,25 @@ namespace rondo::lang {
 namespace {
 
 // How tightly an expression binds; larger binds tighter.
-enum Level : int { kQuantifierLevel, kImpliesLevel, kOrLevel, kAndLevel, kNotLevel, kCompareLevel, kSumLevel, kProductLevel, kUnaryLevel, kPostfixLevel };
+enum Level : int {
+  kQuantifierLevel,
+  kImpliesLevel,
+  kOrLevel,
+  kAndLevel,
+  kNotLevel,
+  kCompareLevel,
+  kSumLevel,
+  kProductLevel,
+  kUnaryLevel,
+  kPostfixLevel
+};
 
 int LevelOf(const Expr& e) {
   switch (e.kind) {
-    case ExprKind::kQuantifier: return kQuantifierLevel;
-    case ExprKind::kUnary: return e.text == "not" ? kNotLevel : kUnaryLevel;
+    case ExprKind::kQuantifier:
+      return kQuantifierLevel;
+    case ExprKind::kUnary:
+      return e.text == "not" ? kNotLevel : kUnaryLevel;
     case ExprKind::kBinary:
       if (e.text == "implies") return kImpliesLevel;
       if (e.text == "or") return kOrLevel;
@@ -30,7 +43,8 @@ int LevelOf(const Expr& e) {
     case ExprKind::kIndex:
     case ExprKind::kCall:
     case ExprKind::kList:
-    case ExprKind::kTuple: return kPostfixLevel;
+    case ExprKind::kTuple:
+      return kPostfixLevel;
   }
   return kPostfixLevel;
 }
@@ -47,7 +61,8 @@ class Printer {
 
   std::string Type(const TypeSyntax& type) const {
     std::string text = type.name;
-    for (size_t i = 0; i < type.arguments.size(); ++i) text += (i == 0 ? "<" : ", ") + Type(type.arguments[i]);
+    for (size_t i = 0; i < type.arguments.size(); ++i)
+      text += (i == 0 ? "<" : ", ") + Type(type.arguments[i]);
     if (!type.arguments.empty()) text += ">";
     for (const ExprId d : type.dimensions) text += fmt::format("[{}]", d.valid() ? Print(d, 0) : "");
     return text;
@@ -63,16 +78,22 @@ class Printer {
   std::string Bare(const Expr& e) const {
     const int level = LevelOf(e);
     switch (e.kind) {
-      case ExprKind::kError: return "<error>";
+      case ExprKind::kError:
+        return "<error>";
       case ExprKind::kInt:
       case ExprKind::kFloat:
       case ExprKind::kString:
       case ExprKind::kBool:
-      case ExprKind::kName: return e.text;
-      case ExprKind::kPid: return "pid";
-      case ExprKind::kField: return fmt::format("{}.{}", Base(e.args[0]), e.text);
-      case ExprKind::kIndex: return fmt::format("{}[{}]", Base(e.args[0]), Print(e.args[1], 0));
-      case ExprKind::kCall: return fmt::format("{}({})", Base(e.args[0]), Items(e, 1));
+      case ExprKind::kName:
+        return e.text;
+      case ExprKind::kPid:
+        return "pid";
+      case ExprKind::kField:
+        return fmt::format("{}.{}", Base(e.args[0]), e.text);
+      case ExprKind::kIndex:
+        return fmt::format("{}[{}]", Base(e.args[0]), Print(e.args[1], 0));
+      case ExprKind::kCall:
+        return fmt::format("{}({})", Base(e.args[0]), Items(e, 1));
       case ExprKind::kUnary:
         return fmt::format("{}{}", e.text == "not" ? "not " : "-", Print(e.args[0], level));
       case ExprKind::kBinary: {
@@ -81,8 +102,10 @@ class Printer {
         const int right = e.text == "implies" ? level : level + 1;
         return fmt::format("{} {} {}", Print(e.args[0], left), e.text, Right(e, right));
       }
-      case ExprKind::kList: return fmt::format("[{}]", Items(e, 0));
-      case ExprKind::kTuple: return fmt::format("({})", Items(e, 0));
+      case ExprKind::kList:
+        return fmt::format("[{}]", Items(e, 0));
+      case ExprKind::kTuple:
+        return fmt::format("({})", Items(e, 0));
       case ExprKind::kQuantifier: {
         std::string binders;
         for (const Binder& b : e.binders) {

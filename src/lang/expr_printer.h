@@ -6,8 +6,8 @@
 
 namespace rondo::lang {
 
-/// The canonical text of an expression: one blank around operators, brackets only where the grammar needs them.
-/// Parsing it again gives the same tree.
+/// The canonical text of an expression: one blank around operators, brackets only where the grammar needs
+/// them. Parsing it again gives the same tree.
 std::string PrintExpr(const ExprPool& pool, ExprId expr);
 std::string PrintType(const ExprPool& pool, const TypeSyntax& type);
 

@@ -1,10 +1,10 @@
 #include "lang/lexer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
-
-#include <fmt/format.h>
 
 namespace rondo::lang {
 namespace {
@@ -30,8 +30,9 @@ constexpr std::array<Spelling, 6> kSigns = {{{"\xE2\x89\xA4", "<=", false},
                                              {"\xC2\xAC", "not", true}}};
 
 // A line that starts in the first column with one of these ends any bracket that is still open.
-constexpr std::array<std::string_view, 11> kSectionWords = {"using", "def",   "allread", "allwrite", "local",    "init",
-                                                            "param", "assume", "summary", "invariant", "SafetyProp"};
+constexpr std::array<std::string_view, 11> kSectionWords = {"using",   "def",       "allread",   "allwrite",
+                                                            "local",   "init",      "param",     "assume",
+                                                            "summary", "invariant", "SafetyProp"};
 
 bool IsNameStart(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool IsNamePart(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
@@ -39,7 +40,8 @@ bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)); }
 
 class Lexer {
  public:
-  Lexer(const diag::SourceSet& sources, diag::FileId file, const LexerOptions& options, diag::Diagnostics& diagnostics)
+  Lexer(const diag::SourceSet& sources, diag::FileId file, const LexerOptions& options,
+        diag::Diagnostics& diagnostics)
       : file_(file), text_(sources.text(file)), options_(options), diagnostics_(diagnostics) {}
 
   TokenStream Run() {
@@ -67,9 +69,13 @@ class Lexer {
     return {file_, static_cast<uint32_t>(begin), static_cast<uint32_t>(end)};
   }
   char Peek(size_t ahead = 0) const { return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0'; }
-  bool AtLineEnd() const { return at_ >= text_.size() || Peek() == '\n' || (Peek() == '\r' && Peek(1) == '\n'); }
+  bool AtLineEnd() const {
+    return at_ >= text_.size() || Peek() == '\n' || (Peek() == '\r' && Peek(1) == '\n');
+  }
 
-  void Emit(TokenKind kind, size_t begin, size_t end) { Emit(kind, begin, end, text_.substr(begin, end - begin)); }
+  void Emit(TokenKind kind, size_t begin, size_t end) {
+    Emit(kind, begin, end, text_.substr(begin, end - begin));
+  }
   void Emit(TokenKind kind, size_t begin, size_t end, std::string_view text) {
     stream_.tokens.push_back({kind, Range(begin, end), text});
     if (kind != TokenKind::kIndent && kind != TokenKind::kDedent) blank_ = kind == TokenKind::kNewline;
@@ -116,16 +122,17 @@ class Lexer {
       return;
     }
     while (width < indents_.back()) {
+      const size_t outer = indents_[indents_.size() - 2];
+      if (width > outer) {
+        diagnostics_
+            .Report(Kind::kSyntaxIndentation, Range(begin, at_),
+                    "this line is indented like no line above it")
+            .Under(fmt::format("{} columns", width))
+            .Help(fmt::format("indent by {} or {} columns", outer, indents_.back()));
+        return;  // go on as if it stood in the inner block
+      }
       indents_.pop_back();
       Emit(TokenKind::kDedent, at_, at_);
-      if (width > indents_.back()) {
-        diagnostics_.Report(Kind::kSyntaxIndentation, Range(begin, at_), "this line is indented like no line above it")
-            .Under(fmt::format("{} columns", width))
-            .Help(fmt::format("indent by {} or {} columns", indents_.back(),
-                              indents_.back() + 4));
-        // Go on as if it stood in the enclosing block.
-        return;
-      }
     }
   }
 
@@ -206,7 +213,8 @@ class Lexer {
     }
     ++at_;
     while (at_ < text_.size() && (static_cast<unsigned char>(Peek()) & 0xC0u) == 0x80u) ++at_;
-    auto& report = diagnostics_.Report(Kind::kSyntaxUnknownCharacter, Range(begin, at_), "a character that means nothing here");
+    auto& report = diagnostics_.Report(Kind::kSyntaxUnknownCharacter, Range(begin, at_),
+                                       "a character that means nothing here");
     if (c == '&') report.Help("write `and`");
     if (c == '|') report.Help("write `or`");
   }
@@ -216,13 +224,8 @@ class Lexer {
     if (sign.size() == 1 && (c == '(' || c == '[' || c == '{')) brackets_.push_back({c, Range(begin, at_)});
     if (sign.size() == 1 && (c == ')' || c == ']' || c == '}')) {
       const char open = c == ')' ? '(' : c == ']' ? '[' : '{';
-      if (!brackets_.empty() && brackets_.back().open == open) {
-        brackets_.pop_back();
-      } else {
-        auto& report = diagnostics_.Report(Kind::kSyntaxUnexpected, Range(begin, at_), fmt::format("`{}` closes nothing", c));
-        if (!brackets_.empty()) report.At(brackets_.back().span, "this is open");
-        return;  // as if it were not there
-      }
+      // One that closes nothing is a matter of the parser, which knows what should stand there instead.
+      if (!brackets_.empty() && brackets_.back().open == open) brackets_.pop_back();
     }
     Emit(TokenKind::kPunctuation, begin, at_, sign);
   }
@@ -237,14 +240,16 @@ class Lexer {
       ++at_;
       while (IsDigit(Peek())) ++at_;
     }
-    if ((Peek() == 'e' || Peek() == 'E') && (IsDigit(Peek(1)) || ((Peek(1) == '+' || Peek(1) == '-') && IsDigit(Peek(2))))) {
+    if ((Peek() == 'e' || Peek() == 'E') &&
+        (IsDigit(Peek(1)) || ((Peek(1) == '+' || Peek(1) == '-') && IsDigit(Peek(2))))) {
       is_float = true;
       at_ += 2;
       while (IsDigit(Peek())) ++at_;
     }
     if (IsNamePart(Peek())) {
       while (IsNamePart(Peek())) ++at_;
-      diagnostics_.Report(Kind::kSyntaxNumber, Range(begin, at_), "not a number, and a name cannot start with a digit");
+      diagnostics_.Report(Kind::kSyntaxNumber, Range(begin, at_),
+                          "not a number, and a name cannot start with a digit");
       return Emit(TokenKind::kInt, begin, at_, "0");
     }
     Emit(is_float ? TokenKind::kFloat : TokenKind::kInt, begin, at_);
@@ -252,7 +257,8 @@ class Lexer {
 
   void ReadString(char quote) {
     const size_t begin = at_++;
-    while (at_ < text_.size() && Peek() != quote && Peek() != '\n') at_ += Peek() == '\\' && at_ + 1 < text_.size() && Peek(1) != '\n' ? 2 : 1;
+    while (at_ < text_.size() && Peek() != quote && Peek() != '\n')
+      at_ += Peek() == '\\' && at_ + 1 < text_.size() && Peek(1) != '\n' ? 2 : 1;
     if (Peek() == quote) {
       ++at_;
     } else {
@@ -286,15 +292,21 @@ TokenStream Lex(const diag::SourceSet& sources, diag::FileId file, const LexerOp
 
 std::string Describe(const Token& token) {
   switch (token.kind) {
-    case TokenKind::kEnd: return "the end of the file";
-    case TokenKind::kNewline: return "the end of the line";
-    case TokenKind::kIndent: return "a deeper line";
-    case TokenKind::kDedent: return "the end of the block";
-    case TokenKind::kString: return "a string";
+    case TokenKind::kEnd:
+      return "the end of the file";
+    case TokenKind::kNewline:
+      return "the end of the line";
+    case TokenKind::kIndent:
+      return "a deeper line";
+    case TokenKind::kDedent:
+      return "the end of the block";
+    case TokenKind::kString:
+      return "a string";
     case TokenKind::kName:
     case TokenKind::kInt:
     case TokenKind::kFloat:
-    case TokenKind::kPunctuation: break;
+    case TokenKind::kPunctuation:
+      break;
   }
   return fmt::format("`{}`", token.text);
 }

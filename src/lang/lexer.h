@@ -9,10 +9,11 @@ struct LexerOptions {
   bool indentation = true;  ///< emit kNewline, kIndent and kDedent; off for languages with braces
 };
 
-/// The tokens of a file. Never fails: bad input is reported and skipped, and the indentation tokens are balanced.
+/// The tokens of a file. Never fails: bad input is reported and skipped, and the indentation tokens are
+/// balanced.
 ///
-/// Lines join inside ( ) [ ] and { } and after a `\`. Lines that are blank or only a comment do not count. A tab in the
-/// indentation counts up to the next multiple of 8, with a warning.
+/// Lines join inside ( ) [ ] and { } and after a `\`. Lines that are blank or only a comment do not count. A
+/// tab in the indentation counts up to the next multiple of 8, with a warning.
 TokenStream Lex(const diag::SourceSet& sources, diag::FileId file, const LexerOptions& options,
                 diag::Diagnostics& diagnostics);
 

@@ -20,12 +20,12 @@ struct TypeSyntax {
 };
 
 enum class ExprKind : uint8_t {
-  kError,       // reported already
-  kInt,         // text
-  kFloat,       // text
-  kString,      // text, with its quotes
-  kBool,        // text: true or false
-  kName,        // text
+  kError,   // reported already
+  kInt,     // text
+  kFloat,   // text
+  kString,  // text, with its quotes
+  kBool,    // text: true or false
+  kName,    // text
   kPid,
   kField,       // args: base; text: member
   kIndex,       // args: base, index

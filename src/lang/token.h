@@ -8,9 +8,20 @@
 
 namespace rondo::lang {
 
-enum class TokenKind : uint8_t { kEnd, kNewline, kIndent, kDedent, kName, kInt, kFloat, kString, kPunctuation };
+enum class TokenKind : uint8_t {
+  kEnd,
+  kNewline,
+  kIndent,
+  kDedent,
+  kName,
+  kInt,
+  kFloat,
+  kString,
+  kPunctuation
+};
 
-/// `text` is the canonical spelling: `<=` also for the sign U+2264. It points into the source or at a constant.
+/// `text` is the canonical spelling: `<=` also for the sign U+2264. It points into the source or at a
+/// constant.
 struct Token {
   TokenKind kind;
   diag::Span span;
@@ -20,9 +31,9 @@ struct Token {
 /// A comment with its `#` or `//`; formatters put it back.
 struct Comment {
   diag::Span span;
-  uint32_t line;      ///< 1-based
-  bool alone;         ///< nothing but blanks stands before it on its line
-  std::string text;   ///< without the mark, trimmed
+  uint32_t line;     ///< 1-based
+  bool alone;        ///< nothing but blanks stands before it on its line
+  std::string text;  ///< without the mark, trimmed
 };
 
 struct TokenStream {

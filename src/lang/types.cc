@@ -28,7 +28,8 @@ TypeId TypeTable::List(TypeId element) { return Add({TypeKind::kList, "", {}, {e
 TypeId TypeTable::Tuple(std::vector<TypeId> parts) {
   static const std::vector<std::string> kNames = {"first", "second", "third", "fourth", "fifth", "sixth"};
   std::vector<std::string> fields;
-  for (size_t i = 0; i < parts.size(); ++i) fields.push_back(i < kNames.size() ? kNames[i] : fmt::format("item{}", i + 1));
+  for (size_t i = 0; i < parts.size(); ++i)
+    fields.push_back(i < kNames.size() ? kNames[i] : fmt::format("item{}", i + 1));
   return Add({TypeKind::kTuple, "", std::move(fields), std::move(parts)});
 }
 TypeId TypeTable::Record(std::string name, std::vector<std::string> fields, std::vector<TypeId> parts) {
@@ -102,9 +103,12 @@ bool TypeTable::Coerce(TypeId from, TypeId to) {
 std::string TypeTable::Name(TypeId type) const {
   const Type& t = (*this)[type];
   switch (t.kind) {
-    case TypeKind::kArray: return Name(t.parts[0]) + "[...]";
-    case TypeKind::kList: return fmt::format("List<{}>", Name(t.parts[0]));
-    case TypeKind::kVariable: return "?";
+    case TypeKind::kArray:
+      return Name(t.parts[0]) + "[...]";
+    case TypeKind::kList:
+      return fmt::format("List<{}>", Name(t.parts[0]));
+    case TypeKind::kVariable:
+      return "?";
     case TypeKind::kTuple: {
       std::string text;
       for (const TypeId part : t.parts) text += (text.empty() ? "" : ", ") + Name(part);
@@ -118,7 +122,8 @@ std::string TypeTable::Name(TypeId type) const {
     case TypeKind::kStream:
     case TypeKind::kRecord:
     case TypeKind::kEnum:
-    case TypeKind::kOpaque: return t.name;
+    case TypeKind::kOpaque:
+      return t.name;
   }
   return "?";
 }

@@ -10,7 +10,7 @@ namespace rondo::lang {
 using TypeId = base::Id<struct TypeTag>;
 
 enum class TypeKind : uint8_t {
-  kError,  ///< reported already; agrees with everything
+  kError,     ///< reported already; agrees with everything
   kVariable,  ///< not known yet; see TypeTable::Unify
   kBool,
   kInt,

@@ -28,13 +28,15 @@ struct Universal {
 
 class Engine {
  public:
-  Engine(Arena& arena, const std::map<expr::SortId, std::vector<TermId>>& fallback, const InstantiationLimits& limits)
+  Engine(Arena& arena, const std::map<expr::SortId, std::vector<TermId>>& fallback,
+         const InstantiationLimits& limits)
       : arena_(arena), fallback_(fallback), limits_(limits), index_(arena) {}
 
   Ground Run(const std::vector<Assertion>& assertions) {
     for (const Assertion& assertion : assertions) Assert(assertion.formula, assertion.group);
     for (int round = 0; round < limits_.rounds; ++round) {
-      for (; indexed_ < result_.assertions.size(); ++indexed_) index_.Add(result_.assertions[indexed_].formula);
+      for (; indexed_ < result_.assertions.size(); ++indexed_)
+        index_.Add(result_.assertions[indexed_].formula);
       bool progress = false;
       // Instances may add universals; those wait for the next round.
       const size_t count = universals_.size();
@@ -77,7 +79,8 @@ class Engine {
     universals_.push_back(std::move(u));
   }
 
-  // `formula` without quantifiers, equisatisfiable as an assertion together with what is asserted on the side.
+  // `formula` without quantifiers, equisatisfiable as an assertion together with what is asserted on the
+  // side.
   TermId Strip(TermId formula, Polarity polarity, const std::string& group) {
     if (!arena_.HasQuantifier(formula)) return formula;
     const std::vector<TermId> args(arena_.args(formula).begin(), arena_.args(formula).end());
@@ -111,8 +114,8 @@ class Engine {
     }
   }
 
-  // One body for each quantifier, whichever polarity asks first: `exists x. p` holds of the Skolem constants if it
-  // holds of anything, and `not forall x. p` is `exists x. not p`.
+  // One body for each quantifier, whichever polarity asks first: `exists x. p` holds of the Skolem constants
+  // if it holds of anything, and `not forall x. p` is `exists x. not p`.
   TermId Skolemize(TermId quantifier) {
     const std::vector<TermId> args(arena_.args(quantifier).begin(), arena_.args(quantifier).end());
     expr::Substitution map;
@@ -142,12 +145,16 @@ class Engine {
       Assert(arena_.Or(when ? arena_.Not(name) : name, holds ? body : arena_.Not(body)), group);
     };
     if (polarity != Polarity::kNegative) {
-      if (forall) universal(true, args.back());
-      else existential(true, true);
+      if (forall)
+        universal(true, args.back());
+      else
+        existential(true, true);
     }
     if (polarity != Polarity::kPositive) {
-      if (forall) existential(false, false);
-      else universal(false, arena_.Not(args.back()));
+      if (forall)
+        existential(false, false);
+      else
+        universal(false, arena_.Not(args.back()));
     }
     return name;
   }
@@ -177,7 +184,8 @@ class Engine {
     const std::vector<TermId> matched = universals_[which].matched;
     std::map<TermId, std::vector<TermId>> candidates;
     for (const TermId v : variables) {
-      if (std::find(matched.begin(), matched.end(), v) == matched.end()) candidates[v] = Candidates(universals_[which], v);
+      if (std::find(matched.begin(), matched.end(), v) == matched.end())
+        candidates[v] = Candidates(universals_[which], v);
     }
     std::vector<std::vector<TermId>> matches;
     for (const std::vector<TermId>& trigger : std::vector(universals_[which].triggers)) {
@@ -228,7 +236,8 @@ class Engine {
 }  // namespace
 
 Ground Instantiate(Arena& arena, const std::vector<Assertion>& assertions,
-                   const std::map<expr::SortId, std::vector<TermId>>& fallback, const InstantiationLimits& limits) {
+                   const std::map<expr::SortId, std::vector<TermId>>& fallback,
+                   const InstantiationLimits& limits) {
   return Engine(arena, fallback, limits).Run(assertions);
 }
 

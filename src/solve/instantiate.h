@@ -9,7 +9,8 @@
 namespace rondo::solve {
 
 enum class InstantiationMode : uint8_t {
-  /// Several variables that are not integers take only values that stand together in some application: few instances.
+  /// Several variables that are not integers take only values that stand together in some application: few
+  /// instances.
   kTriggers,
   /// Every variable takes every term that stands where it stands: all combinations.
   kPlaces,
@@ -24,10 +25,11 @@ struct InstantiationLimits {
 
 /// Quantifier-free assertions that follow from `assertions` (so that unsatisfiability carries over):
 /// - existential variables become constants;
-/// - universal variables are replaced by the closed terms that stand where the variable stands: a variable that is an
-///   argument of f, or an index of an array, takes every closed term that occurs at the same place of f or of that
-///   array. For formulas in which variables occur only in such places this loses nothing (Ge & de Moura, Complete
-///   instantiation for quantified formulas, CAV 2009), up to `limits`;
+/// - universal variables are replaced by the closed terms that stand where the variable stands: a variable
+/// that is an
+///   argument of f, or an index of an array, takes every closed term that occurs at the same place of f or of
+///   that array. For formulas in which variables occur only in such places this loses nothing (Ge & de Moura,
+///   Complete instantiation for quantified formulas, CAV 2009), up to `limits`;
 /// - a variable in no such place takes the `fallback` terms of its sort;
 /// - quantifiers under equality or if-then-else are named by a Boolean constant.
 /// `complete` is false when something was left out, so that satisfiability need not carry over.

@@ -12,16 +12,22 @@ using expr::Arena;
 using expr::Op;
 using expr::TermId;
 
-// An array term may be built from several arrays by stores and if-then-else: an index of it is an index of all.
+// An array term may be built from several arrays by stores and if-then-else: an index of it is an index of
+// all.
 void ArrayRoots(const Arena& arena, TermId array, std::vector<uint32_t>& roots) {
   switch (arena.op(array)) {
-    case Op::kVariable: roots.push_back(arena.symbol_of(array).value); return;
-    case Op::kStore: ArrayRoots(arena, arena.arg(array, 0), roots); return;
+    case Op::kVariable:
+      roots.push_back(arena.symbol_of(array).value);
+      return;
+    case Op::kStore:
+      ArrayRoots(arena, arena.arg(array, 0), roots);
+      return;
     case Op::kIte:
       ArrayRoots(arena, arena.arg(array, 1), roots);
       ArrayRoots(arena, arena.arg(array, 2), roots);
       return;
-    default: return;  // the result of a function: no place that anything else shares
+    default:
+      return;  // the result of a function: no place that anything else shares
   }
 }
 
@@ -31,7 +37,8 @@ void ForEachPlace(const Arena& arena, TermId t, const std::function<void(Place, 
   const auto position = [](size_t i) { return static_cast<uint32_t>(i); };
   switch (arena.op(t)) {
     case Op::kApply:
-      for (size_t i = 0; i < args.size(); ++i) use({Op::kApply, arena.symbol_of(t).value, position(i)}, args[i]);
+      for (size_t i = 0; i < args.size(); ++i)
+        use({Op::kApply, arena.symbol_of(t).value, position(i)}, args[i]);
       return;
     case Op::kSelect:
     case Op::kStore: {
@@ -50,7 +57,9 @@ void ForEachPlace(const Arena& arena, TermId t, const std::function<void(Place, 
       for (size_t i = 0; i < args.size(); ++i) use({arena.op(t), list.value, position(i)}, args[i]);
       return;
     }
-    case Op::kField: use({Op::kField, arena.sort_of(args[0]).value, 0}, args[0]); return;
+    case Op::kField:
+      use({Op::kField, arena.sort_of(args[0]).value, 0}, args[0]);
+      return;
     case Op::kEq: {
       const expr::SortKind kind = arena.sort(arena.sort_of(args[0])).kind;
       const bool data = kind == expr::SortKind::kOpaque || kind == expr::SortKind::kList ||
@@ -59,7 +68,8 @@ void ForEachPlace(const Arena& arena, TermId t, const std::function<void(Place, 
       for (const TermId arg : args) use({Op::kEq, arena.sort_of(arg).value, 0}, arg);
       return;
     }
-    default: return;  // interpreted
+    default:
+      return;  // interpreted
   }
 }
 
@@ -89,14 +99,16 @@ const std::vector<TermId>& PlaceIndex::Applications(expr::SymbolId function) con
 std::map<TermId, std::vector<VariablePlace>> PlacesOf(const Arena& arena, TermId body,
                                                       const std::vector<TermId>& variables) {
   std::map<TermId, std::vector<VariablePlace>> result;
-  const auto is_variable = [&](TermId t) { return std::find(variables.begin(), variables.end(), t) != variables.end(); };
+  const auto is_variable = [&](TermId t) {
+    return std::find(variables.begin(), variables.end(), t) != variables.end();
+  };
   std::unordered_set<TermId> seen;
   expr::VisitPostorder(arena, body, seen, [&](TermId t) {
     ForEachPlace(arena, t, [&](Place place, TermId arg) {
       if (is_variable(arg)) {
         result[arg].push_back({place, expr::Rational(0)});
-      } else if (arena.op(arg) == Op::kAdd && arena.args(arg).size() == 2 && arena.IsNumber(arena.arg(arg, 0)) &&
-                 is_variable(arena.arg(arg, 1))) {
+      } else if (arena.op(arg) == Op::kAdd && arena.args(arg).size() == 2 &&
+                 arena.IsNumber(arena.arg(arg, 0)) && is_variable(arena.arg(arg, 1))) {
         result[arena.arg(arg, 1)].push_back({place, arena.number(arena.arg(arg, 0))});
       }
     });

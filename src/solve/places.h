@@ -8,8 +8,8 @@
 
 namespace rondo::solve {
 
-/// Where a term can stand as an argument of something uninterpreted: an argument of a function, an index of an array,
-/// of a list, an operand of a field or an equality.
+/// Where a term can stand as an argument of something uninterpreted: an argument of a function, an index of
+/// an array, of a list, an operand of a field or an equality.
 struct Place {
   expr::Op op;
   uint32_t what;  ///< the symbol of a function or array; the sort for the rest
@@ -42,6 +42,6 @@ struct VariablePlace {
 
 /// The places of each of `variables` in `body`.
 std::map<expr::TermId, std::vector<VariablePlace>> PlacesOf(const expr::Arena& arena, expr::TermId body,
-                                                           const std::vector<expr::TermId>& variables);
+                                                            const std::vector<expr::TermId>& variables);
 
 }  // namespace rondo::solve

@@ -29,7 +29,8 @@ struct Query {
 
 /// No interpretation satisfies the assertions.
 struct Unsat {
-  std::vector<std::string> core;  ///< groups that the engine's refutation used; a superset of what is necessary
+  std::vector<std::string>
+      core;  ///< groups that the engine's refutation used; a superset of what is necessary
 };
 
 /// The engine found an interpretation; values of the wanted terms that it could evaluate.
@@ -49,7 +50,8 @@ struct Budget {
   bool core = true;  ///< compute a core when unsatisfiable
 };
 
-/// Thread-safe: one object may serve several threads, each call is independent. Errors of the engine are `Unknown`.
+/// Thread-safe: one object may serve several threads, each call is independent. Errors of the engine are
+/// `Unknown`.
 class Solver {
  public:
   virtual ~Solver() = default;

@@ -12,11 +12,14 @@ namespace {
 using expr::Arena;
 using expr::TermId;
 
-bool Contains(const std::vector<TermId>& list, TermId t) { return std::find(list.begin(), list.end(), t) != list.end(); }
+bool Contains(const std::vector<TermId>& list, TermId t) {
+  return std::find(list.begin(), list.end(), t) != list.end();
+}
 
 }  // namespace
 
-std::vector<std::vector<TermId>> FindTriggers(const Arena& arena, TermId body, const std::vector<TermId>& variables) {
+std::vector<std::vector<TermId>> FindTriggers(const Arena& arena, TermId body,
+                                              const std::vector<TermId>& variables) {
   std::vector<TermId> patterns;
   std::unordered_set<TermId> seen;
   expr::VisitPostorder(arena, body, seen, [&](TermId t) {
@@ -51,7 +54,8 @@ std::vector<std::vector<TermId>> FindTriggers(const Arena& arena, TermId body, c
   return result;
 }
 
-std::vector<std::vector<TermId>> MatchTrigger(const Arena& arena, const PlaceIndex& index, const std::vector<TermId>& trigger,
+std::vector<std::vector<TermId>> MatchTrigger(const Arena& arena, const PlaceIndex& index,
+                                              const std::vector<TermId>& trigger,
                                               const std::vector<TermId>& variables, size_t limit) {
   std::vector<std::vector<TermId>> result;
   std::map<TermId, TermId> bound;

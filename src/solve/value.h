@@ -8,8 +8,8 @@
 
 namespace rondo::solve {
 
-/// A value of a model: a truth value, a number, the name of a member of an enumeration or of an element of an opaque
-/// sort, or a record's fields.
+/// A value of a model: a truth value, a number, the name of a member of an enumeration or of an element of an
+/// opaque sort, or a record's fields.
 struct Value {
   using Fields = std::vector<Value>;
   std::variant<bool, expr::Rational, std::string, Fields> data;

@@ -14,7 +14,9 @@ using expr::TermId;
 
 class Instantiation : public testing::Test {
  protected:
-  TermId Const(const char* name, expr::SortId sort) { return arena_.Variable(arena_.Declare(name, {}, sort)); }
+  TermId Const(const char* name, expr::SortId sort) {
+    return arena_.Variable(arena_.Declare(name, {}, sort));
+  }
   bool IsUnsat(const std::vector<Assertion>& assertions) {
     return std::holds_alternative<Unsat>(z3::Z3Solver().Check({&arena_, assertions, {}}, {}, {}));
   }
@@ -28,7 +30,8 @@ TEST_F(Instantiation, UsesTheIndicesThatOccur) {
   const TermId v = Const("v", bools_);
   const TermId i = Const("i", arena_.Int());
   const TermId k = arena_.FreshBound("k", arena_.Int());
-  const std::vector<Assertion> assertions{{arena_.Forall({k}, arena_.Select(v, k)), "all"}, {arena_.Not(arena_.Select(v, i)), ""}};
+  const std::vector<Assertion> assertions{{arena_.Forall({k}, arena_.Select(v, k)), "all"},
+                                          {arena_.Not(arena_.Select(v, i)), ""}};
   EXPECT_TRUE(IsUnsat(Run(assertions).assertions));
 }
 
@@ -37,7 +40,8 @@ TEST_F(Instantiation, FollowsOffsets) {
   const TermId i = Const("i", arena_.Int());
   const TermId k = arena_.FreshBound("k", arena_.Int());
   const TermId next = arena_.Select(v, arena_.Add(k, arena_.IntNumber(1)));
-  const std::vector<Assertion> assertions{{arena_.Forall({k}, next), ""}, {arena_.Not(arena_.Select(v, i)), ""}};
+  const std::vector<Assertion> assertions{{arena_.Forall({k}, next), ""},
+                                          {arena_.Not(arena_.Select(v, i)), ""}};
   EXPECT_TRUE(IsUnsat(Run(assertions).assertions));
 }
 
@@ -51,7 +55,8 @@ TEST_F(Instantiation, HandlesBothPolaritiesUnderEquality) {
   };
   // p = (all of v), p, and some v is false: contradiction through the positive direction.
   const TermId i = Const("i", arena_.Int());
-  EXPECT_TRUE(IsUnsat(Run({{arena_.Eq(p, all(v)), ""}, {p, ""}, {arena_.Not(arena_.Select(v, i)), ""}}).assertions));
+  EXPECT_TRUE(
+      IsUnsat(Run({{arena_.Eq(p, all(v)), ""}, {p, ""}, {arena_.Not(arena_.Select(v, i)), ""}}).assertions));
   // Not p needs a false item; satisfiable, so it must not be refuted.
   EXPECT_FALSE(IsUnsat(Run({{arena_.Eq(p, all(w)), ""}, {arena_.Not(p), ""}}).assertions));
 }
@@ -61,7 +66,8 @@ TEST_F(Instantiation, NeverRefutesWhatIsSatisfiable) {
   const TermId k = arena_.FreshBound("k", arena_.Int());
   const TermId m = arena_.FreshBound("m", arena_.Int());
   // For each k there is an m with v[m] != v[k]: true of any array with two values.
-  const TermId formula = arena_.Forall({k}, arena_.Exists({m}, arena_.Not(arena_.Eq(arena_.Select(v, m), arena_.Select(v, k)))));
+  const TermId formula =
+      arena_.Forall({k}, arena_.Exists({m}, arena_.Not(arena_.Eq(arena_.Select(v, m), arena_.Select(v, k)))));
   const Ground ground = Run({{formula, ""}, {arena_.Select(v, arena_.IntNumber(0)), ""}});
   EXPECT_FALSE(ground.complete);
   EXPECT_FALSE(IsUnsat(ground.assertions));
@@ -75,7 +81,8 @@ TEST_F(Instantiation, MatchesTriggers) {
   const TermId a = Const("a", path);
   const TermId b = Const("b", path);
   const TermId symmetric = arena_.Forall({p, q}, arena_.Eq(arena_.Apply(d, {p, q}), arena_.Apply(d, {q, p})));
-  const std::vector<Assertion> assertions{{symmetric, "symmetric"}, {arena_.Lt(arena_.Apply(d, {a, b}), arena_.Apply(d, {b, a})), ""}};
+  const std::vector<Assertion> assertions{{symmetric, "symmetric"},
+                                          {arena_.Lt(arena_.Apply(d, {a, b}), arena_.Apply(d, {b, a})), ""}};
   const Ground ground = Run(assertions);
   EXPECT_TRUE(IsUnsat(ground.assertions));
   EXPECT_LE(ground.assertions.size(), 5u);  // not one instance for each pair of terms
@@ -101,7 +108,8 @@ TEST_F(Instantiation, ListsBehaveLikeLists) {
   const TermId longer = arena_.Append(l, e);
   const TermId removed = arena_.Remove(l, e);
   const TermId zero = arena_.IntNumber(0);
-  EXPECT_TRUE(is_unsat(arena_.Not(arena_.Eq(arena_.Length(longer), arena_.Add(length, arena_.IntNumber(1))))));
+  EXPECT_TRUE(
+      is_unsat(arena_.Not(arena_.Eq(arena_.Length(longer), arena_.Add(length, arena_.IntNumber(1))))));
   EXPECT_TRUE(is_unsat(arena_.Not(arena_.Eq(arena_.At(longer, length), e))));
   EXPECT_TRUE(is_unsat(arena_.Lt(length, arena_.Length(removed))));
   EXPECT_TRUE(is_unsat(arena_.Lt(length, zero)));
@@ -109,7 +117,8 @@ TEST_F(Instantiation, ListsBehaveLikeLists) {
   EXPECT_FALSE(is_unsat(arena_.Lt(arena_.Length(removed), length)));
   EXPECT_FALSE(is_unsat(arena_.Eq(arena_.Length(removed), length)));
   const TermId changed = arena_.Set(l, zero, e);
-  EXPECT_TRUE(is_unsat(arena_.And(arena_.Lt(zero, length), arena_.Not(arena_.Eq(arena_.At(changed, zero), e)))));
+  EXPECT_TRUE(
+      is_unsat(arena_.And(arena_.Lt(zero, length), arena_.Not(arena_.Eq(arena_.At(changed, zero), e)))));
 }
 
 }  // namespace

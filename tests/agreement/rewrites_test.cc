@@ -1,5 +1,5 @@
-// Every simplification of the term constructors preserves meaning: Z3 proves the plain term equal to the simplified one.
-// A rewrite that never fires here fails the test as well.
+// Every simplification of the term constructors preserves meaning: Z3 proves the plain term equal to the
+// simplified one. A rewrite that never fires here fails the test as well.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -13,7 +13,9 @@ namespace {
 class Rewrites : public testing::Test {
  protected:
   Rewrites() {
-    arena_.observer = [this](Rewrite rewrite, TermId plain, TermId simple) { pairs_.push_back({rewrite, plain, simple}); };
+    arena_.observer = [this](Rewrite rewrite, TermId plain, TermId simple) {
+      pairs_.push_back({rewrite, plain, simple});
+    };
   }
   TermId Const(const char* name, SortId sort) { return arena_.Variable(arena_.Declare(name, {}, sort)); }
 
@@ -91,7 +93,8 @@ TEST_F(Rewrites, PreserveMeaning) {
     std::vector<solve::Assertion> assertions;
     // The lists of the logic are uninterpreted; the two rewrites on them are what the axioms of literals say.
     if (pair.rewrite == Rewrite::kLengthMake || pair.rewrite == Rewrite::kAtMake) continue;
-    const TermId differ = arena_.Raw(Op::kNot, arena_.Bool(), 0, {arena_.Raw(Op::kEq, arena_.Bool(), 0, {pair.plain, pair.simple})});
+    const TermId differ = arena_.Raw(Op::kNot, arena_.Bool(), 0,
+                                     {arena_.Raw(Op::kEq, arena_.Bool(), 0, {pair.plain, pair.simple})});
     assertions.push_back({differ, ""});
     const solve::Answer answer = z3.Check({&arena_, assertions, {}}, {}, {});
     EXPECT_TRUE(std::holds_alternative<solve::Unsat>(answer)) << Name(pair.rewrite);

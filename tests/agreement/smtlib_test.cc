@@ -1,7 +1,9 @@
-// The printed script means what the terms mean: an external solver reads it and agrees with Z3 in this process.
+// The printed script means what the terms mean: an external solver reads it and agrees with Z3 in this
+// process.
+#include "expr/smtlib.h"
+
 #include <gtest/gtest.h>
 
-#include "expr/smtlib.h"
 #include "solve/smtlib/smtlib_solver.h"
 #include "solve/z3/z3_solver.h"
 
@@ -30,7 +32,8 @@ TEST(SmtLib, AnExternalSolverAgrees) {
       a.Forall({k}, a.Le(half, a.Field(a.Select(v, k), 0))),
       a.Eq(a.IntDiv(i, a.IntNumber(-3)), a.Mod(i, a.IntNumber(5))),
       a.Eq(a.At(list, i), a.Select(a.Store(v, i, a.At(list, a.Length(list))), a.Add(i, a.IntNumber(1)))),
-      a.Not(a.Eq(a.Append(list, a.Select(v, i)), a.Remove(a.MakeList(pos, {a.Select(v, i)}), a.Select(v, i)))),
+      a.Not(
+          a.Eq(a.Append(list, a.Select(v, i)), a.Remove(a.MakeList(pos, {a.Select(v, i)}), a.Select(v, i)))),
   };
   const z3::Z3Solver z3;
   const smtlib::SmtLibSolver cvc5("cvc5");

@@ -14,6 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   koord::Parse(sources, file, program, diagnostics);
   koord::Check(sources, program, diagnostics);
   size_t length = 0;
-  for (const diag::Diagnostic& d : diagnostics.Sorted()) length += diag::RenderText(sources, d, diag::Colour::kOff).size();
+  for (const diag::Diagnostic& d : diagnostics.Sorted())
+    length += diag::RenderText(sources, d, diag::Colour::kOff).size();
   return length == 1 ? 1 : 0;
 }

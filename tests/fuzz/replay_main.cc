@@ -1,4 +1,5 @@
-// Runs a fuzz target over every Koord file below the given folders, and over truncations and mutations of each.
+// Runs a fuzz target over every Koord file below the given folders, and over truncations and mutations of
+// each.
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -10,7 +11,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
 
 namespace {
 
-void Run(const std::string& text) { LLVMFuzzerTestOneInput(reinterpret_cast<const uint8_t*>(text.data()), text.size()); }
+void Run(const std::string& text) {
+  LLVMFuzzerTestOneInput(reinterpret_cast<const uint8_t*>(text.data()), text.size());
+}
 
 }  // namespace
 
@@ -19,7 +22,8 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(argv[i])) {
       const auto extension = entry.path().extension();
-      if (!entry.is_regular_file() || (extension != ".koord" && extension != ".spec" && extension != ".bin")) continue;
+      if (!entry.is_regular_file() || (extension != ".koord" && extension != ".spec" && extension != ".bin"))
+        continue;
       std::ifstream in(entry.path(), std::ios::binary);
       const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
       ++files;

@@ -1,6 +1,6 @@
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "koord/check/checker.h"
 
@@ -17,20 +17,22 @@ struct BuiltinName {
   std::string_view name;
   Builtin builtin;
 };
-constexpr BuiltinName kBuiltins[] = {{"pos", Builtin::kPos},   {"pos3d", Builtin::kPos}, {"mid", Builtin::kMid},
-                                     {"midpoint", Builtin::kMid}, {"dist", Builtin::kDist}, {"len", Builtin::kLen},
-                                     {"abs", Builtin::kAbs},   {"min", Builtin::kMin},   {"max", Builtin::kMax},
-                                     {"old", Builtin::kOld},   {"rect", Builtin::kRect}};
+constexpr BuiltinName kBuiltins[] = {
+    {"pos", Builtin::kPos},   {"pos3d", Builtin::kPos}, {"mid", Builtin::kMid},  {"midpoint", Builtin::kMid},
+    {"dist", Builtin::kDist}, {"len", Builtin::kLen},   {"abs", Builtin::kAbs},  {"min", Builtin::kMin},
+    {"max", Builtin::kMax},   {"old", Builtin::kOld},   {"rect", Builtin::kRect}};
 
 }  // namespace
 
 bool Checker::Arity(const lang::Expr& e, size_t least, size_t most, std::string_view name) {
   const size_t given = e.args.size() - 1;
   if (given >= least && given <= most) return true;
-  const std::string wanted = least == most   ? fmt::format("{}", least)
-                             : most > 100    ? fmt::format("at least {}", least)
-                                             : fmt::format("{} or {}", least, most);
-  diagnostics_.Report(Kind::kKoordArity, e.span, fmt::format("`{}` takes {} argument{}", name, wanted, wanted == "1" ? "" : "s"))
+  const std::string wanted = least == most ? fmt::format("{}", least)
+                             : most > 100  ? fmt::format("at least {}", least)
+                                           : fmt::format("{} or {}", least, most);
+  diagnostics_
+      .Report(Kind::kKoordArity, e.span,
+              fmt::format("`{}` takes {} argument{}", name, wanted, wanted == "1" ? "" : "s"))
       .Under(fmt::format("{} given", given));
   for (size_t i = 1; i < e.args.size(); ++i) Expr(e.args[i]);
   return false;
@@ -112,7 +114,9 @@ TypeId Checker::CallFunction(ExprId id, const lang::Expr& e, size_t index) {
   const size_t parameters = model_.functions[index].parameters.size();
   if (parameters != e.args.size() - 1) {
     const Function f = model_.functions[index];
-    diagnostics_.Report(Kind::kKoordArity, e.span, fmt::format("`{}` takes {} argument{}", f.name, parameters, parameters == 1 ? "" : "s"))
+    diagnostics_
+        .Report(Kind::kKoordArity, e.span,
+                fmt::format("`{}` takes {} argument{}", f.name, parameters, parameters == 1 ? "" : "s"))
         .Under(fmt::format("{} given", e.args.size() - 1))
         .At(f.span, f.def != nullptr ? "declared here" : "first used here");
     for (size_t i = 1; i < e.args.size(); ++i) Expr(e.args[i]);
@@ -123,8 +127,9 @@ TypeId Checker::CallFunction(ExprId id, const lang::Expr& e, size_t index) {
     const TypeId wanted = model_.functions[index].parameters[i];
     if (types.Coerce(given, wanted)) continue;
     const Function& f = model_.functions[index];
-    auto& report = diagnostics_.Report(Kind::kKoordTypeMismatch, exprs_[e.args[i + 1]].span,
-                                       fmt::format("argument {} of `{}` must be a `{}`", i + 1, f.name, types.Name(wanted)));
+    auto& report = diagnostics_.Report(
+        Kind::kKoordTypeMismatch, exprs_[e.args[i + 1]].span,
+        fmt::format("argument {} of `{}` must be a `{}`", i + 1, f.name, types.Name(wanted)));
     report.Under(fmt::format("this is a `{}`", types.Name(given)));
     report.At(f.span, f.def != nullptr ? "declared here" : "its first use decided so");
     if (f.def == nullptr) report.Help(fmt::format("declare it: `def fun {}(...) -> ...`", f.name));
@@ -137,16 +142,19 @@ TypeId Checker::CallMethod(ExprId id, const lang::Expr& e) {
   const lang::Expr& callee = exprs_[e.args[0]];
   const TypeId list = Expr(callee.args[0]);
   if (callee.text != "remove" && callee.text != "append" && callee.text != "add") {
-    diagnostics_.Report(Kind::kKoordNotCallable, callee.span, fmt::format("there is no method `{}`", callee.text))
+    diagnostics_
+        .Report(Kind::kKoordNotCallable, callee.span, fmt::format("there is no method `{}`", callee.text))
         .Help("lists have `append` and `remove`");
     for (size_t i = 1; i < e.args.size(); ++i) Expr(e.args[i]);
     return types.error();
   }
-  Set(id, RefKind::kBuiltin, static_cast<size_t>(callee.text == "remove" ? Builtin::kRemove : Builtin::kAppend));
+  Set(id, RefKind::kBuiltin,
+      static_cast<size_t>(callee.text == "remove" ? Builtin::kRemove : Builtin::kAppend));
   if (!Arity(e, 1, 1, callee.text)) return types.error();
   const TypeId element = types.FreshVariable();
   if (!types.Unify(list, types.List(element))) {
-    return Mismatch(exprs_[callee.args[0]].span, fmt::format("`{}` needs a list, not a `{}`", callee.text, types.Name(list)));
+    return Mismatch(exprs_[callee.args[0]].span,
+                    fmt::format("`{}` needs a list, not a `{}`", callee.text, types.Name(list)));
   }
   NeedType(e.args[1], element, fmt::format("the argument of `{}`", callee.text));
   return types.error();  // a statement, not a value
@@ -165,7 +173,8 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
     case Builtin::kDist: {
       // mid([p, q]) and mid(p, q)
       std::vector<ExprId> points(e.args.begin() + 1, e.args.end());
-      if (points.size() == 1 && exprs_[points[0]].kind == ExprKind::kList && exprs_[points[0]].args.size() == 2) {
+      if (points.size() == 1 && exprs_[points[0]].kind == ExprKind::kList &&
+          exprs_[points[0]].args.size() == 2) {
         Expr(points[0]);
         points = exprs_[points[0]].args;
       } else if (!Arity(e, 2, 2, name)) {
@@ -173,10 +182,13 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
       }
       const TypeId a = Expr(points[0]);
       const TypeId b = Expr(points[1]);
-      const TypeId result = builtin == Builtin::kDist ? types.real() : types.IsNumeric(a) ? types.real() : types.pos();
+      const TypeId result = builtin == Builtin::kDist ? types.real()
+                            : types.IsNumeric(a)      ? types.real()
+                                                      : types.pos();
       if (types.IsNumeric(a) && types.IsNumeric(b)) return result;
       if (types.Unify(a, types.pos()) && types.Unify(b, types.pos())) return result;
-      diagnostics_.Report(Kind::kKoordTypeMismatch, e.span, fmt::format("`{}` needs two points or two numbers", name))
+      diagnostics_
+          .Report(Kind::kKoordTypeMismatch, e.span, fmt::format("`{}` needs two points or two numbers", name))
           .At(exprs_[points[0]].span, fmt::format("`{}`", types.Name(a)))
           .At(exprs_[points[1]].span, fmt::format("`{}`", types.Name(b)));
       return types.error();
@@ -192,13 +204,15 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
     case Builtin::kAbs:
     case Builtin::kMin:
     case Builtin::kMax: {
-      if (!Arity(e, builtin == Builtin::kAbs ? 1 : 2, builtin == Builtin::kAbs ? 1 : 1000, name)) return types.real();
+      if (!Arity(e, builtin == Builtin::kAbs ? 1 : 2, builtin == Builtin::kAbs ? 1 : 1000, name))
+        return types.real();
       bool all_int = true;
       for (size_t i = 1; i < e.args.size(); ++i) {
         const TypeId t = Expr(e.args[i]);
         all_int = all_int && types.Is(t, TypeKind::kInt);
         if (!types.Coerce(t, types.real())) {
-          Mismatch(exprs_[e.args[i]].span, fmt::format("`{}` needs numbers, not a `{}`", name, types.Name(t)));
+          Mismatch(exprs_[e.args[i]].span,
+                   fmt::format("`{}` needs numbers, not a `{}`", name, types.Name(t)));
         }
       }
       return all_int ? types.integer() : types.real();
@@ -215,7 +229,8 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
       Arity(e, 2, 2, name);
       return Mismatch(e.span, "`rect(a, b)` can only stand behind `in`");
     case Builtin::kRemove:
-    case Builtin::kAppend: break;  // methods
+    case Builtin::kAppend:
+      break;  // methods
   }
   return types.error();
 }
@@ -248,7 +263,8 @@ void Checker::CheckSignatures() {
   for (const Function& f : model_.functions) {
     if (!f.declared) continue;  // a callable port that is never called
     if (f.def != nullptr && f.def->has_body && model_.types.Is(f.result, TypeKind::kVariable)) continue;
-    const auto open = std::find_if(f.parameters.begin(), f.parameters.end(), [&](TypeId t) { return model_.types.HasVariable(t); });
+    const auto open = std::find_if(f.parameters.begin(), f.parameters.end(),
+                                   [&](TypeId t) { return model_.types.HasVariable(t); });
     const bool result_open = model_.types.HasVariable(f.result);
     // A function that is only called as a statement returns nothing of interest.
     if (open == f.parameters.end() && !result_open) continue;
@@ -256,7 +272,9 @@ void Checker::CheckSignatures() {
       model_.types.Unify(f.result, model_.types.boolean());
       continue;
     }
-    diagnostics_.Report(Kind::kKoordUnknownSignature, f.span, fmt::format("the type of `{}` cannot be told from its uses", f.name))
+    diagnostics_
+        .Report(Kind::kKoordUnknownSignature, f.span,
+                fmt::format("the type of `{}` cannot be told from its uses", f.name))
         .Help(fmt::format("declare it: `def fun {}(...) -> ...`", f.name));
   }
 }

@@ -6,8 +6,8 @@
 
 namespace rondo::koord {
 
-/// The checker. Its rules are split over files by what they are about: declarations, expressions, calls, statements,
-/// specifications.
+/// The checker. Its rules are split over files by what they are about: declarations, expressions, calls,
+/// statements, specifications.
 class Checker {
  public:
   Checker(const diag::SourceSet& sources, const Program& program, diag::Diagnostics& diagnostics)
@@ -54,7 +54,9 @@ class Checker {
   void NeedBool(ExprId e, std::string_view what);
   void NeedType(ExprId e, TypeId wanted, std::string_view what);
   TypeId Mismatch(diag::Span span, std::string message);
-  void Set(ExprId id, RefKind kind, size_t index) { model_.ref_of[id.index()] = {kind, static_cast<uint32_t>(index)}; }
+  void Set(ExprId id, RefKind kind, size_t index) {
+    model_.ref_of[id.index()] = {kind, static_cast<uint32_t>(index)};
+  }
   uint32_t Bind(const std::string& name, TypeId type, diag::Span span);
 
   // calls.cc
@@ -96,7 +98,7 @@ class Checker {
   std::map<std::string, diag::Span> claimed_;
   std::set<std::string> modules_;
   std::map<std::string, std::pair<TypeId, uint32_t>> enum_members_;
-  std::vector<uint32_t> scope_;  // bindings that are visible, innermost last
+  std::vector<uint32_t> scope_;            // bindings that are visible, innermost last
   std::map<int, std::set<size_t>> calls_;  // function (-1: none) -> functions that its body calls
   Place place_ = Place::kSpec;
   int function_ = -1;

@@ -1,6 +1,6 @@
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "koord/check/checker.h"
 #include "lang/suggest.h"
@@ -35,7 +35,8 @@ Model Checker::Run() {
     function_ = static_cast<int>(f);
     std::vector<uint32_t> bindings;
     for (size_t i = 0; i < def->parameters.size(); ++i) {
-      bindings.push_back(Bind(def->parameters[i].name, model_.functions[f].parameters[i], def->parameters[i].span));
+      bindings.push_back(
+          Bind(def->parameters[i].name, model_.functions[f].parameters[i], def->parameters[i].span));
     }
     model_.bound_by[def] = bindings;
     Body(def->body);
@@ -53,15 +54,17 @@ Model Checker::Run() {
   CheckRecursion();
   CheckSignatures();
   if (model_.events.empty() && !diagnostics_.has_errors()) {
-    diagnostics_.Report(Kind::kKoordNoEvent, program_.item_spans.empty() ? Span{} : program_.item_spans.back(),
-                        "a program needs at least one event")
+    diagnostics_
+        .Report(Kind::kKoordNoEvent, program_.item_spans.empty() ? Span{} : program_.item_spans.back(),
+                "a program needs at least one event")
         .Help("an event has a name, a precondition `pre:` and an effect `eff:`");
   }
   return std::move(model_);
 }
 
 void Checker::CheckOrder() {
-  constexpr const char* kNames[] = {"the name of the program", "definitions", "modules", "variables", "`init`", "events"};
+  constexpr const char* kNames[] = {
+      "the name of the program", "definitions", "modules", "variables", "`init`", "events"};
   struct Rank {
     int operator()(const AgentHeader&) const { return 0; }
     int operator()(const FunctionDef&) const { return 1; }
@@ -84,7 +87,9 @@ void Checker::CheckOrder() {
     if (rank < highest) {
       // A specification brings its own functions, often in a file of its own.
       if (std::holds_alternative<FunctionDef>(program_.items[i])) continue;
-      diagnostics_.Report(Kind::kKoordSectionOrder, program_.item_spans[i], fmt::format("{} after {}", kNames[rank], kNames[highest]))
+      diagnostics_
+          .Report(Kind::kKoordSectionOrder, program_.item_spans[i],
+                  fmt::format("{} after {}", kNames[rank], kNames[highest]))
           .At(highest_span, "this comes last by convention")
           .Help("the usual order: definitions, modules, variables, `init`, events, specification");
       return;
@@ -125,7 +130,8 @@ void Checker::DeclareTypes() {
     std::vector<TypeId> parts;
     for (const Decl& field : adt->fields) {
       if (std::find(fields.begin(), fields.end(), field.name) != fields.end()) {
-        diagnostics_.Report(Kind::kKoordDuplicate, field.span, fmt::format("`{}` is declared twice", field.name));
+        diagnostics_.Report(Kind::kKoordDuplicate, field.span,
+                            fmt::format("`{}` is declared twice", field.name));
         continue;
       }
       TypeId type = TypeOf(field);
@@ -148,10 +154,12 @@ void Checker::DeclareAll() {
   for (const Item& item : program_.items) {
     if (const auto* module = std::get_if<ModuleDef>(&item)) DeclareModule(*module);
     if (const auto* section = std::get_if<Section>(&item)) {
-      constexpr VariableKind kKinds[] = {VariableKind::kAllread, VariableKind::kAllwrite, VariableKind::kLocal};
+      constexpr VariableKind kKinds[] = {VariableKind::kAllread, VariableKind::kAllwrite,
+                                         VariableKind::kLocal};
       for (const Decl& d : section->decls) DeclareVariable(kKinds[static_cast<size_t>(section->kind)], "", d);
     }
-    if (const auto* param = std::get_if<ParamDef>(&item)) DeclareVariable(VariableKind::kParam, "", param->decl);
+    if (const auto* param = std::get_if<ParamDef>(&item))
+      DeclareVariable(VariableKind::kParam, "", param->decl);
     if (const auto* function = std::get_if<FunctionDef>(&item)) DeclareFunction(*function);
     if (const auto* init = std::get_if<InitDef>(&item)) model_.inits.push_back(init);
     if (const auto* event = std::get_if<EventDef>(&item)) {
@@ -183,8 +191,10 @@ void Checker::DeclareVariable(VariableKind kind, const std::string& module, cons
   Decl shape = decl;
   if (kind == VariableKind::kAllread) {
     // `T x[N_sys]`, `T[] x` and `T x` are one cell for each robot.
-    if (!shape.dimensions.empty()) shape.dimensions.erase(shape.dimensions.begin());
-    else if (!shape.type.dimensions.empty()) shape.type.dimensions.erase(shape.type.dimensions.begin());
+    if (!shape.dimensions.empty())
+      shape.dimensions.erase(shape.dimensions.begin());
+    else if (!shape.type.dimensions.empty())
+      shape.type.dimensions.erase(shape.type.dimensions.begin());
   }
   if (!decl.members.empty()) {
     const std::string type_name = "enum of " + name;
@@ -194,8 +204,10 @@ void Checker::DeclareVariable(VariableKind kind, const std::string& module, cons
     }
   } else {
     variable.type = TypeOf(shape);
-    if (!shape.dimensions.empty()) variable.length = shape.dimensions[0];
-    else if (!shape.type.dimensions.empty()) variable.length = shape.type.dimensions[0];
+    if (!shape.dimensions.empty())
+      variable.length = shape.dimensions[0];
+    else if (!shape.type.dimensions.empty())
+      variable.length = shape.type.dimensions[0];
   }
   if (kind == VariableKind::kSensor && decl.type.name == "PathPlanner" && !claimed_.contains("PathPlanner")) {
     Function function{name, {}, {}, {}, nullptr, false, decl.span, static_cast<int>(model_.variables.size())};
@@ -269,7 +281,8 @@ TypeId Checker::TypeOf(const lang::TypeSyntax& syntax) {
     // Only functions look inside.
     type = model_.named_types[syntax.name] = types.Opaque(syntax.name);
   } else {
-    auto& report = diagnostics_.Report(Kind::kKoordUnknownType, syntax.span, fmt::format("there is no type `{}`", syntax.name));
+    auto& report = diagnostics_.Report(Kind::kKoordUnknownType, syntax.span,
+                                       fmt::format("there is no type `{}`", syntax.name));
     std::vector<std::string> known{"int", "float", "bool", "string", "stream", "pos", "List", "Queue"};
     for (const auto& [name, _] : model_.named_types) known.push_back(name);
     if (const std::string near = lang::Suggest(syntax.name, known); !near.empty()) {

@@ -23,25 +23,39 @@ TypeId Checker::Expr(ExprId id) {
 TypeId Checker::Visit(ExprId id, const lang::Expr& e) {
   auto& types = model_.types;
   switch (e.kind) {
-    case ExprKind::kError: return types.error();
-    case ExprKind::kInt: return types.integer();
-    case ExprKind::kFloat: return types.real();
-    case ExprKind::kString: return types.string();
-    case ExprKind::kBool: return types.boolean();
-    case ExprKind::kPid: return types.integer();
-    case ExprKind::kName: return Name(id, e);
-    case ExprKind::kField: return Field(id, e);
-    case ExprKind::kIndex: return Index(id, e);
-    case ExprKind::kCall: return Call(id, e);
-    case ExprKind::kUnary: return Unary(e);
-    case ExprKind::kBinary: return Binary(e);
-    case ExprKind::kList: return List(e);
+    case ExprKind::kError:
+      return types.error();
+    case ExprKind::kInt:
+      return types.integer();
+    case ExprKind::kFloat:
+      return types.real();
+    case ExprKind::kString:
+      return types.string();
+    case ExprKind::kBool:
+      return types.boolean();
+    case ExprKind::kPid:
+      return types.integer();
+    case ExprKind::kName:
+      return Name(id, e);
+    case ExprKind::kField:
+      return Field(id, e);
+    case ExprKind::kIndex:
+      return Index(id, e);
+    case ExprKind::kCall:
+      return Call(id, e);
+    case ExprKind::kUnary:
+      return Unary(e);
+    case ExprKind::kBinary:
+      return Binary(e);
+    case ExprKind::kList:
+      return List(e);
     case ExprKind::kTuple: {
       std::vector<TypeId> parts;
       for (const ExprId arg : e.args) parts.push_back(Expr(arg));
       return types.Tuple(std::move(parts));
     }
-    case ExprKind::kQuantifier: return Quantifier(id, e);
+    case ExprKind::kQuantifier:
+      return Quantifier(id, e);
   }
   return types.error();
 }
@@ -69,7 +83,8 @@ TypeId Checker::Unary(const lang::Expr& e) {
   }
   const TypeId type = Expr(e.args[0]);
   if (types.Is(type, TypeKind::kVariable)) types.Unify(type, types.real());
-  if (types.IsNumeric(type) || types.Is(type, TypeKind::kError) || types.Resolve(type) == types.pos()) return type;
+  if (types.IsNumeric(type) || types.Is(type, TypeKind::kError) || types.Resolve(type) == types.pos())
+    return type;
   return Mismatch(e.span, fmt::format("`-` needs a number, not a `{}`", types.Name(type)));
 }
 
@@ -93,7 +108,9 @@ TypeId Checker::Arithmetic(const lang::Expr& e, TypeId a, TypeId b) {
   const bool scales = e.text == "*" || e.text == "/";
   const auto settle = [&](TypeId unknown, TypeId other) {
     if (!types.Is(unknown, TypeKind::kVariable)) return;
-    types.Unify(unknown, types.Is(other, TypeKind::kInt) || types.Is(other, TypeKind::kVariable) || scales ? types.real() : other);
+    types.Unify(unknown, types.Is(other, TypeKind::kInt) || types.Is(other, TypeKind::kVariable) || scales
+                             ? types.real()
+                             : other);
   };
   settle(a, b);
   settle(b, a);
@@ -107,8 +124,11 @@ TypeId Checker::Arithmetic(const lang::Expr& e, TypeId a, TypeId b) {
   if (pos_a && pos_b && (e.text == "+" || e.text == "-")) return types.pos();
   if (pos_a && types.IsNumeric(b) && scales) return types.pos();
   if (types.IsNumeric(a) && pos_b && e.text == "*") return types.pos();
-  if (e.text == "+" && (types.Is(a, TypeKind::kString) || types.Is(b, TypeKind::kString))) return types.string();
-  diagnostics_.Report(Kind::kKoordTypeMismatch, e.span, fmt::format("`{}` does not work on a `{}` and a `{}`", e.text, types.Name(a), types.Name(b)))
+  if (e.text == "+" && (types.Is(a, TypeKind::kString) || types.Is(b, TypeKind::kString)))
+    return types.string();
+  diagnostics_
+      .Report(Kind::kKoordTypeMismatch, e.span,
+              fmt::format("`{}` does not work on a `{}` and a `{}`", e.text, types.Name(a), types.Name(b)))
       .At(exprs_[e.args[0]].span, fmt::format("`{}`", types.Name(a)))
       .At(exprs_[e.args[1]].span, fmt::format("`{}`", types.Name(b)));
   return types.error();
@@ -127,10 +147,13 @@ TypeId Checker::Comparison(const lang::Expr& e, TypeId a, TypeId b) {
     if (equality && !types.Is(a, TypeKind::kStream)) return types.boolean();
     if (types.Is(a, TypeKind::kVariable)) types.Unify(a, types.real());
     if (types.IsNumeric(a)) return types.boolean();
-    diagnostics_.Report(Kind::kKoordTypeMismatch, e.span, fmt::format("`{}` compares numbers, not a `{}`", e.text, types.Name(a)));
+    diagnostics_.Report(Kind::kKoordTypeMismatch, e.span,
+                        fmt::format("`{}` compares numbers, not a `{}`", e.text, types.Name(a)));
     return types.boolean();
   }
-  diagnostics_.Report(Kind::kKoordTypeMismatch, e.span, fmt::format("a `{}` cannot be compared with a `{}`", types.Name(a), types.Name(b)))
+  diagnostics_
+      .Report(Kind::kKoordTypeMismatch, e.span,
+              fmt::format("a `{}` cannot be compared with a `{}`", types.Name(a), types.Name(b)))
       .At(exprs_[e.args[0]].span, fmt::format("`{}`", types.Name(a)))
       .At(exprs_[e.args[1]].span, fmt::format("`{}`", types.Name(b)));
   return types.boolean();
@@ -142,18 +165,20 @@ TypeId Checker::Membership(const lang::Expr& e, TypeId a) {
   const ExprId right = e.args[1];
   const lang::Expr& set = exprs_[right];
   if (set.kind == ExprKind::kName && set.text == "ID" && FindVariable("ID") < 0) {
-    if (!types.Unify(a, types.integer())) Mismatch(exprs_[e.args[0]].span, "the number of a robot is an `int`");
+    if (!types.Unify(a, types.integer()))
+      Mismatch(exprs_[e.args[0]].span, "the number of a robot is an `int`");
     return types.boolean();
   }
-  if (set.kind == ExprKind::kCall && exprs_[set.args[0]].kind == ExprKind::kName && exprs_[set.args[0]].text == "rect" &&
-      !claimed_.contains("rect")) {
+  if (set.kind == ExprKind::kCall && exprs_[set.args[0]].kind == ExprKind::kName &&
+      exprs_[set.args[0]].text == "rect" && !claimed_.contains("rect")) {
     Set(right, RefKind::kBuiltin, static_cast<size_t>(Builtin::kRect));
     if (Arity(set, 2, 2, "rect")) {
       NeedType(set.args[1], types.pos(), "a corner of `rect`");
       NeedType(set.args[2], types.pos(), "a corner of `rect`");
     }
     if (!types.Unify(a, types.pos())) {
-      Mismatch(exprs_[e.args[0]].span, fmt::format("only a `pos` can be in a `rect`, not a `{}`", types.Name(a)));
+      Mismatch(exprs_[e.args[0]].span,
+               fmt::format("only a `pos` can be in a `rect`, not a `{}`", types.Name(a)));
     }
     return types.boolean();
   }
@@ -192,9 +217,11 @@ TypeId Checker::Quantifier(ExprId id, const lang::Expr& e) {
       kind = DomainKind::kRobots;
       type = types.integer();
     } else if (domain->kind == ExprKind::kName && FindVariable(domain->text) < 0 &&
-               (model_.named_types.contains(domain->text) || domain->text == "int" || domain->text == "float" ||
-                domain->text == "bool" || domain->text == "pos" || domain->text == "Point" ||
-                (std::isupper(static_cast<unsigned char>(domain->text[0])) && !claimed_.contains(domain->text)))) {
+               (model_.named_types.contains(domain->text) || domain->text == "int" ||
+                domain->text == "float" || domain->text == "bool" || domain->text == "pos" ||
+                domain->text == "Point" ||
+                (std::isupper(static_cast<unsigned char>(domain->text[0])) &&
+                 !claimed_.contains(domain->text)))) {
       lang::TypeSyntax syntax;
       syntax.name = domain->text;
       syntax.span = domain->span;
@@ -204,7 +231,8 @@ TypeId Checker::Quantifier(ExprId id, const lang::Expr& e) {
       const TypeId list = Expr(binder.domain);
       type = types.FreshVariable();
       if (!types.Is(list, TypeKind::kError) && !types.Unify(list, types.List(type))) {
-        Mismatch(domain->span, fmt::format("`{}` ranges over `ID`, a type or a list, not over a `{}`", e.text, types.Name(list)));
+        Mismatch(domain->span, fmt::format("`{}` ranges over `ID`, a type or a list, not over a `{}`", e.text,
+                                           types.Name(list)));
         type = types.error();
       }
     }
@@ -213,7 +241,8 @@ TypeId Checker::Quantifier(ExprId id, const lang::Expr& e) {
           .Help("a robot cannot try every value of a type; specifications can");
     }
     std::vector<uint32_t> bound;
-    for (size_t i = 0; i < binder.names.size(); ++i) bound.push_back(Bind(binder.names[i], type, binder.spans[i]));
+    for (size_t i = 0; i < binder.names.size(); ++i)
+      bound.push_back(Bind(binder.names[i], type, binder.spans[i]));
     domains.kinds.push_back(kind);
     domains.bindings.push_back(std::move(bound));
   }

@@ -30,7 +30,8 @@ struct Variable {
   bool Shared() const { return kind == VariableKind::kAllread || kind == VariableKind::kAllwrite; }
 };
 
-/// A function of the program (with a body) or of the world (without: uninterpreted, constrained by summaries only).
+/// A function of the program (with a body) or of the world (without: uninterpreted, constrained by summaries
+/// only).
 struct Function {
   std::string name;
   std::vector<std::string> parameter_names;
@@ -46,14 +47,14 @@ struct Function {
 /// What a name, member or index expression refers to.
 enum class RefKind : uint8_t {
   kNone,
-  kVariable,    ///< the robot's own value; the whole array for `allread`
-  kCell,        ///< args[1] is the robot: `x[i]`, and in specifications `v[i]`
-  kPortOf,      ///< `M[i].port` in a specification: args[0].args[1] is the robot
-  kBinding,     ///< a variable of a quantifier, loop, function or summary: index into `bindings`
-  kMember,      ///< member `index` of the enumeration that is the expression's type
-  kSystemSize,  ///< N_sys
-  kFunction,    ///< of a call: index into `functions`
-  kBuiltin,     ///< of a call: index is a Builtin
+  kVariable,     ///< the robot's own value; the whole array for `allread`
+  kCell,         ///< args[1] is the robot: `x[i]`, and in specifications `v[i]`
+  kPortOf,       ///< `M[i].port` in a specification: args[0].args[1] is the robot
+  kBinding,      ///< a variable of a quantifier, loop, function or summary: index into `bindings`
+  kMember,       ///< member `index` of the enumeration that is the expression's type
+  kSystemSize,   ///< N_sys
+  kFunction,     ///< of a call: index into `functions`
+  kBuiltin,      ///< of a call: index is a Builtin
   kOpaqueField,  ///< a member of an opaque type: the function `index` of the base
 };
 struct Ref {

@@ -1,6 +1,6 @@
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "koord/check/checker.h"
 #include "lang/suggest.h"
@@ -36,7 +36,8 @@ TypeId Checker::Name(ExprId id, const lang::Expr& e) {
     Set(id, RefKind::kBinding, *it);
     return model_.bindings[*it].type;
   }
-  if (const int v = FindVariable(e.text); v >= 0) return ReadVariable(id, static_cast<size_t>(v), RefKind::kVariable);
+  if (const int v = FindVariable(e.text); v >= 0)
+    return ReadVariable(id, static_cast<size_t>(v), RefKind::kVariable);
   if (const auto it = enum_members_.find(e.text); it != enum_members_.end()) {
     Set(id, RefKind::kMember, it->second.second);
     return it->second.first;
@@ -53,12 +54,15 @@ TypeId Checker::Name(ExprId id, const lang::Expr& e) {
   }
   if (ports.size() == 1) return ReadVariable(id, ports[0], RefKind::kVariable);
   if (ports.size() > 1) {
-    auto& report = diagnostics_.Report(Kind::kKoordAmbiguousPort, e.span, fmt::format("`{}` could be more than one port", e.text));
-    for (const size_t p : ports) report.At(model_.variables[p].span, fmt::format("`{}`", model_.variables[p].name));
+    auto& report = diagnostics_.Report(Kind::kKoordAmbiguousPort, e.span,
+                                       fmt::format("`{}` could be more than one port", e.text));
+    for (const size_t p : ports)
+      report.At(model_.variables[p].span, fmt::format("`{}`", model_.variables[p].name));
     return model_.types.error();
   }
   if (IsModule(e.text)) {
-    diagnostics_.Report(Kind::kKoordTypeMismatch, e.span, fmt::format("`{}` is a module, not a value", e.text))
+    diagnostics_
+        .Report(Kind::kKoordTypeMismatch, e.span, fmt::format("`{}` is a module, not a value", e.text))
         .Help("name one of its ports");
     return model_.types.error();
   }
@@ -72,11 +76,13 @@ TypeId Checker::ReadVariable(ExprId id, size_t variable, RefKind kind) {
   Set(id, kind, variable);
   const Span span = exprs_[id].span;
   if (v.function >= 0) {
-    diagnostics_.Report(Kind::kKoordTypeMismatch, span, fmt::format("`{}` must be called", v.name)).At(v.span, "a callable port");
+    diagnostics_.Report(Kind::kKoordTypeMismatch, span, fmt::format("`{}` must be called", v.name))
+        .At(v.span, "a callable port");
     return model_.types.error();
   }
   if (v.kind == VariableKind::kActuator && place_ != Place::kSpec && !writing_) {
-    diagnostics_.Report(Kind::kKoordActuatorRead, span, fmt::format("actuator `{}` can only be written", v.name))
+    diagnostics_
+        .Report(Kind::kKoordActuatorRead, span, fmt::format("actuator `{}` can only be written", v.name))
         .At(v.span, "declared as an actuator here")
         .Help("keep the value in a local variable as well");
   }
@@ -89,13 +95,15 @@ TypeId Checker::ReadVariable(ExprId id, size_t variable, RefKind kind) {
 bool Checker::IsModuleName(ExprId id) const {
   const lang::Expr& e = exprs_[id];
   if (e.kind != ExprKind::kName || !IsModule(e.text)) return false;
-  return std::none_of(scope_.begin(), scope_.end(), [&](uint32_t b) { return model_.bindings[b].name == e.text; });
+  return std::none_of(scope_.begin(), scope_.end(),
+                      [&](uint32_t b) { return model_.bindings[b].name == e.text; });
 }
 
 int Checker::FindPort(const std::string& module, const std::string& port, Span span, bool report) {
   const int found = FindVariable(module + "." + port);
   if (found >= 0 || !report) return found;
-  auto& problem = diagnostics_.Report(Kind::kKoordUnknownMember, span, fmt::format("module `{}` has no port `{}`", module, port));
+  auto& problem = diagnostics_.Report(Kind::kKoordUnknownMember, span,
+                                      fmt::format("module `{}` has no port `{}`", module, port));
   std::vector<std::string> ports;
   std::string list;
   for (const Variable& v : model_.variables) {
@@ -104,7 +112,8 @@ int Checker::FindPort(const std::string& module, const std::string& port, Span s
     list += (list.empty() ? "`" : ", `") + ports.back() + "`";
   }
   if (const std::string near = lang::Suggest(port, ports); !near.empty()) {
-    problem.Help(fmt::format("did you mean `{}`?", near)).Fix({span.file, span.end - static_cast<uint32_t>(port.size()), span.end}, near);
+    problem.Help(fmt::format("did you mean `{}`?", near))
+        .Fix({span.file, span.end - static_cast<uint32_t>(port.size()), span.end}, near);
   } else if (!list.empty()) {
     problem.Help(fmt::format("its ports are {}", list));
   }
@@ -144,7 +153,8 @@ TypeId Checker::FieldOf(ExprId id, const lang::Expr& e, TypeId base) {
         return type.parts[i];
       }
     }
-    auto& report = diagnostics_.Report(Kind::kKoordUnknownMember, e.span, fmt::format("`{}` has no member `{}`", types.Name(base), e.text));
+    auto& report = diagnostics_.Report(Kind::kKoordUnknownMember, e.span,
+                                       fmt::format("`{}` has no member `{}`", types.Name(base), e.text));
     if (const std::string near = lang::Suggest(e.text, type.fields); !near.empty()) {
       report.Help(fmt::format("did you mean `{}`?", near));
     } else {
@@ -176,18 +186,22 @@ TypeId Checker::Index(ExprId id, const lang::Expr& e) {
     if (v >= 0) {
       const Variable& variable = model_.variables[static_cast<size_t>(v)];
       const bool other = place_ == Place::kSpec && variable.PerRobot() && variable.module.empty();
-      if (variable.kind == VariableKind::kAllread || other) return ReadVariable(id, static_cast<size_t>(v), RefKind::kCell);
+      if (variable.kind == VariableKind::kAllread || other)
+        return ReadVariable(id, static_cast<size_t>(v), RefKind::kCell);
     }
     if (!hidden && IsModule(base.text)) {
-      diagnostics_.Report(Kind::kKoordTypeMismatch, e.span, "a module of a robot is not a value").Help("name one of its ports");
+      diagnostics_.Report(Kind::kKoordTypeMismatch, e.span, "a module of a robot is not a value")
+          .Help("name one of its ports");
       return types.error();
     }
   }
   const TypeId type = Expr(e.args[0]);
   switch (types[type].kind) {
     case TypeKind::kArray:
-    case TypeKind::kList: return types[type].parts[0];
-    case TypeKind::kError: return types.error();
+    case TypeKind::kList:
+      return types[type].parts[0];
+    case TypeKind::kError:
+      return types.error();
     case TypeKind::kVariable: {
       const TypeId element = types.FreshVariable();
       types.Unify(type, types.List(element));
@@ -201,9 +215,11 @@ TypeId Checker::Index(ExprId id, const lang::Expr& e) {
     case TypeKind::kRecord:
     case TypeKind::kTuple:
     case TypeKind::kEnum:
-    case TypeKind::kOpaque: break;
+    case TypeKind::kOpaque:
+      break;
   }
-  diagnostics_.Report(Kind::kKoordNotIndexable, e.span, fmt::format("`{}` cannot be indexed", types.Name(type)))
+  diagnostics_
+      .Report(Kind::kKoordNotIndexable, e.span, fmt::format("`{}` cannot be indexed", types.Name(type)))
       .At(base.span, fmt::format("this is a `{}`", types.Name(type)));
   return types.error();
 }

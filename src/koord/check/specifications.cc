@@ -1,6 +1,6 @@
-#include <functional>
-
 #include <fmt/format.h>
+
+#include <functional>
 
 #include "koord/check/checker.h"
 
@@ -20,12 +20,15 @@ void Checker::Invariant(const InvariantDef& def) { NeedBool(def.body, "an invari
 
 void Checker::Assume(const AssumeDef& def) {
   switch (def.kind) {
-    case AssumeKind::kInitially: NeedBool(def.body, "an assumption"); return;
+    case AssumeKind::kInitially:
+      NeedBool(def.body, "an assumption");
+      return;
     case AssumeKind::kFact:
       NeedBool(def.body, "an assumption");
       RestrictScope(def.body, nullptr, "a general assumption");
       return;
-    case AssumeKind::kPort: break;
+    case AssumeKind::kPort:
+      break;
   }
   if (!IsModule(def.module)) {
     diagnostics_.Report(Kind::kKoordUndeclared, def.span, fmt::format("there is no module `{}`", def.module));
@@ -44,12 +47,15 @@ void Checker::Summary(const SummaryDef& def) {
   int index = -1;
   for (size_t i = 0; i < model_.functions.size(); ++i) {
     const Function& f = model_.functions[i];
-    if (f.name == def.function || (f.port >= 0 && f.name.ends_with("." + def.function))) index = static_cast<int>(i);
+    if (f.name == def.function || (f.port >= 0 && f.name.ends_with("." + def.function)))
+      index = static_cast<int>(i);
   }
   if (index < 0) index = static_cast<int>(FunctionNamed(def.function, def.parameters.size(), def.span));
   Function& f = model_.functions[static_cast<size_t>(index)];
   if (!f.external()) {
-    diagnostics_.Report(Kind::kKoordPointlessSpec, def.span, fmt::format("`{}` has a body, which says what it does", f.name))
+    diagnostics_
+        .Report(Kind::kKoordPointlessSpec, def.span,
+                fmt::format("`{}` has a body, which says what it does", f.name))
         .At(f.span, "defined here")
         .Help("summaries are for functions without a body");
     return;
@@ -63,7 +69,9 @@ void Checker::Summary(const SummaryDef& def) {
     }
   }
   if (f.parameters.size() != def.parameters.size()) {
-    diagnostics_.Report(Kind::kKoordArity, def.span, fmt::format("`{}` takes {} arguments", f.name, f.parameters.size()))
+    diagnostics_
+        .Report(Kind::kKoordArity, def.span,
+                fmt::format("`{}` takes {} arguments", f.name, f.parameters.size()))
         .Under(fmt::format("{} named here", def.parameters.size()))
         .At(f.span, f.def != nullptr ? "declared here" : "first used here");
     return;
@@ -71,7 +79,8 @@ void Checker::Summary(const SummaryDef& def) {
   const std::vector<TypeId> parameters = f.parameters;
   const TypeId result = f.result;
   std::vector<uint32_t> bound;
-  for (size_t i = 0; i < parameters.size(); ++i) bound.push_back(Bind(def.parameters[i], parameters[i], def.parameter_spans[i]));
+  for (size_t i = 0; i < parameters.size(); ++i)
+    bound.push_back(Bind(def.parameters[i], parameters[i], def.parameter_spans[i]));
   bound.push_back(Bind(def.result, result, def.span));
   model_.bound_by[&def] = bound;
   NeedBool(def.body, "a summary");
@@ -82,12 +91,14 @@ void Checker::Summary(const SummaryDef& def) {
 void Checker::RestrictInitial(ExprId id, const Variable& variable) {
   const lang::Expr& e = exprs_[id];
   const Ref ref = model_.RefOf(id);
-  const bool reads = (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell) && e.kind != ExprKind::kCall &&
-                     model_.variables[ref.index].kind != VariableKind::kParam;
+  const bool reads = (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell) &&
+                     e.kind != ExprKind::kCall && model_.variables[ref.index].kind != VariableKind::kParam;
   const bool port = ref.kind == RefKind::kFunction && model_.functions[ref.index].port >= 0;
   const bool robot = e.kind == ExprKind::kPid && !variable.PerRobot();
   if (reads || port || robot) {
-    diagnostics_.Report(Kind::kKoordSpecScope, e.span, fmt::format("the initial value of `{}` cannot mention this", variable.name))
+    diagnostics_
+        .Report(Kind::kKoordSpecScope, e.span,
+                fmt::format("the initial value of `{}` cannot mention this", variable.name))
         .Under(robot ? "all robots share the variable" : "nothing has a value yet")
         .Help("compute it in `init`");
     return;
@@ -99,11 +110,14 @@ void Checker::RestrictScope(ExprId root, const AssumeDef* port, std::string_view
   const std::function<void(ExprId)> visit = [&](ExprId id) {
     const lang::Expr& e = exprs_[id];
     const Ref ref = model_.RefOf(id);
-    const bool names_variable = (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell || ref.kind == RefKind::kPortOf) &&
-                                (e.kind == ExprKind::kName || e.kind == ExprKind::kField || e.kind == ExprKind::kIndex);
-    const bool calls_port = ref.kind == RefKind::kFunction && e.kind == ExprKind::kCall && model_.functions[ref.index].port >= 0;
+    const bool names_variable =
+        (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell || ref.kind == RefKind::kPortOf) &&
+        (e.kind == ExprKind::kName || e.kind == ExprKind::kField || e.kind == ExprKind::kIndex);
+    const bool calls_port =
+        ref.kind == RefKind::kFunction && e.kind == ExprKind::kCall && model_.functions[ref.index].port >= 0;
     const auto refuse = [&](std::string why) {
-      diagnostics_.Report(Kind::kKoordSpecScope, e.span, fmt::format("{} cannot mention this", what)).Under(std::move(why));
+      diagnostics_.Report(Kind::kKoordSpecScope, e.span, fmt::format("{} cannot mention this", what))
+          .Under(std::move(why));
     };
     if (names_variable) {
       const Variable& v = model_.variables[ref.index];
@@ -119,7 +133,8 @@ void Checker::RestrictScope(ExprId root, const AssumeDef* port, std::string_view
     }
     if (calls_port) {
       const Variable& v = model_.variables[static_cast<size_t>(model_.functions[ref.index].port)];
-      if (port != nullptr && v.module != port->module) refuse(fmt::format("only ports of the robot's own `{}`", port->module));
+      if (port != nullptr && v.module != port->module)
+        refuse(fmt::format("only ports of the robot's own `{}`", port->module));
       if (port != nullptr && port->when.valid()) refuse("what a planner returns is assumed without `when`");
     }
     if (e.kind == ExprKind::kPid && port == nullptr) refuse("there is no robot here");

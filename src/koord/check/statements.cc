@@ -13,7 +13,8 @@ void Checker::Body(const std::vector<Stmt>& body) {
   const Stmt* ended = nullptr;
   for (const Stmt& stmt : body) {
     if (ended != nullptr) {
-      diagnostics_.Report(Kind::kKoordUnreachable, stmt.span, "this statement is never reached").At(ended->span, "nothing here runs on");
+      diagnostics_.Report(Kind::kKoordUnreachable, stmt.span, "this statement is never reached")
+          .At(ended->span, "nothing here runs on");
       ended = nullptr;
     }
     Statement(stmt);
@@ -31,7 +32,8 @@ void Checker::Statement(const Stmt& stmt) {
   switch (stmt.kind) {
     case StmtKind::kAssign:
     case StmtKind::kAddAssign:
-    case StmtKind::kIncrement: return Assign(stmt);
+    case StmtKind::kIncrement:
+      return Assign(stmt);
     case StmtKind::kCall:
       Expr(stmt.value);
       // l.remove(x) and l.append(x) write their list.
@@ -43,7 +45,9 @@ void Checker::Statement(const Stmt& stmt) {
       }
       return;
     case StmtKind::kStream: {
+      writing_ = true;
       const TypeId type = Expr(stmt.target);
+      writing_ = false;
       if (!model_.types.Is(type, TypeKind::kStream) && !model_.types.Is(type, TypeKind::kError)) {
         diagnostics_.Report(Kind::kKoordStreamMisuse, exprs_[stmt.target].span, "only a stream takes `<<`")
             .Under(fmt::format("this is a `{}`", model_.types.Name(type)));
@@ -52,11 +56,13 @@ void Checker::Statement(const Stmt& stmt) {
       return;
     }
     case StmtKind::kStop:
-      if (place_ == Place::kFunction) misplaced("a function cannot stop the robot").Help("return a value and `stop` in the event");
+      if (place_ == Place::kFunction)
+        misplaced("a function cannot stop the robot").Help("return a value and `stop` in the event");
       return;
     case StmtKind::kBreak:
     case StmtKind::kContinue:
-      if (loops_ == 0) misplaced(fmt::format("`{}` outside a loop", stmt.kind == StmtKind::kBreak ? "break" : "continue"));
+      if (loops_ == 0)
+        misplaced(fmt::format("`{}` outside a loop", stmt.kind == StmtKind::kBreak ? "break" : "continue"));
       return;
     case StmtKind::kReturn: {
       if (place_ != Place::kFunction) {
@@ -70,8 +76,9 @@ void Checker::Statement(const Stmt& stmt) {
       const TypeId given = Expr(stmt.value);
       const Function& f = model_.functions[static_cast<size_t>(function_)];
       if (!model_.types.Coerce(given, f.result)) {
-        diagnostics_.Report(Kind::kKoordTypeMismatch, exprs_[stmt.value].span,
-                            fmt::format("`{}` returns a `{}`", f.name, model_.types.Name(f.result)))
+        diagnostics_
+            .Report(Kind::kKoordTypeMismatch, exprs_[stmt.value].span,
+                    fmt::format("`{}` returns a `{}`", f.name, model_.types.Name(f.result)))
             .Under(fmt::format("this is a `{}`", model_.types.Name(given)))
             .At(f.span, "declared here");
       }
@@ -82,8 +89,10 @@ void Checker::Statement(const Stmt& stmt) {
       Body(stmt.body);
       Body(stmt.orelse);
       return;
-    case StmtKind::kForIn: return LoopIn(stmt);
-    case StmtKind::kForRange: return LoopRange(stmt);
+    case StmtKind::kForIn:
+      return LoopIn(stmt);
+    case StmtKind::kForRange:
+      return LoopRange(stmt);
     case StmtKind::kAtomic:
       if (place_ != Place::kEvent) misplaced("`atomic` belongs into an event");
       ++atomic_;
@@ -100,7 +109,8 @@ void Checker::LoopIn(const Stmt& stmt) {
   if (types.Is(list, TypeKind::kArray)) {
     element = types[list].parts[0];
   } else if (!types.Is(list, TypeKind::kError) && !types.Unify(list, types.List(element))) {
-    element = Mismatch(exprs_[stmt.value].span, fmt::format("a loop runs over a list, not over a `{}`", types.Name(list)));
+    element = Mismatch(exprs_[stmt.value].span,
+                       fmt::format("a loop runs over a list, not over a `{}`", types.Name(list)));
   }
   std::vector<TypeId> parts{element};
   if (stmt.names.size() > 1) {
@@ -109,15 +119,17 @@ void Checker::LoopIn(const Stmt& stmt) {
       parts = types[element].parts;
     } else {
       if (!types.Is(element, TypeKind::kError)) {
-        diagnostics_.Report(Kind::kKoordArity, stmt.name_spans.front().To(stmt.name_spans.back()),
-                            fmt::format("{} variables for items of type `{}`", stmt.names.size(), types.Name(element)));
+        diagnostics_.Report(
+            Kind::kKoordArity, stmt.name_spans.front().To(stmt.name_spans.back()),
+            fmt::format("{} variables for items of type `{}`", stmt.names.size(), types.Name(element)));
       }
       parts.assign(stmt.names.size(), types.error());
     }
   }
   const size_t depth = scope_.size();
   std::vector<uint32_t> bound;
-  for (size_t i = 0; i < stmt.names.size(); ++i) bound.push_back(Bind(stmt.names[i], parts[i], stmt.name_spans[i]));
+  for (size_t i = 0; i < stmt.names.size(); ++i)
+    bound.push_back(Bind(stmt.names[i], parts[i], stmt.name_spans[i]));
   model_.bound_by[&stmt] = bound;
   ++loops_;
   Body(stmt.body);
@@ -144,19 +156,22 @@ void Checker::Assign(const Stmt& stmt) {
     const TypeId given = Expr(stmt.value);
     if (!target.valid()) return;
     if (!types.Coerce(given, target)) {
-      auto& report = diagnostics_.Report(Kind::kKoordTypeMismatch, exprs_[stmt.value].span,
-                                         fmt::format("a `{}` cannot be assigned to a `{}`", types.Name(given), types.Name(target)));
+      auto& report = diagnostics_.Report(
+          Kind::kKoordTypeMismatch, exprs_[stmt.value].span,
+          fmt::format("a `{}` cannot be assigned to a `{}`", types.Name(given), types.Name(target)));
       report.Under(fmt::format("this is a `{}`", types.Name(given)));
       report.At(exprs_[stmt.target].span, fmt::format("this is a `{}`", types.Name(target)));
       return;
     }
   }
   if (!target.valid() || !plus) return;
-  const bool addable = types.IsNumeric(target) || types.Is(target, TypeKind::kError) || types.Is(target, TypeKind::kString) ||
+  const bool addable = types.IsNumeric(target) || types.Is(target, TypeKind::kError) ||
+                       types.Is(target, TypeKind::kString) ||
                        (stmt.kind == StmtKind::kAddAssign && types.Resolve(target) == types.pos());
   if (!addable) {
-    Mismatch(exprs_[stmt.target].span, fmt::format("`{}` needs a number, not a `{}`",
-                                                   stmt.kind == StmtKind::kIncrement ? "++" : "+=", types.Name(target)));
+    Mismatch(exprs_[stmt.target].span,
+             fmt::format("`{}` needs a number, not a `{}`",
+                         stmt.kind == StmtKind::kIncrement ? "++" : "+=", types.Name(target)));
   }
 }
 
@@ -193,7 +208,8 @@ TypeId Checker::Target(ExprId id) {
     }
   }
   auto& report = diagnostics_.Report(Kind::kKoordNotAssignable, e.span, "this cannot be assigned to");
-  if (ref.kind == RefKind::kBinding) report.At(model_.bindings[ref.index].span, "a variable of a loop or quantifier");
+  if (ref.kind == RefKind::kBinding)
+    report.At(model_.bindings[ref.index].span, "a variable of a loop or quantifier");
   if (ref.kind == RefKind::kSystemSize) report.Under("the number of robots is fixed");
   return {};
 }
@@ -207,7 +223,8 @@ TypeId Checker::TargetRoot(ExprId id, size_t variable) {
     return {};
   }
   if (model_.types.Is(v.type, TypeKind::kStream)) {
-    diagnostics_.Report(Kind::kKoordStreamMisuse, span, fmt::format("stream `{}` cannot be assigned to", v.name))
+    diagnostics_
+        .Report(Kind::kKoordStreamMisuse, span, fmt::format("stream `{}` cannot be assigned to", v.name))
         .Help(fmt::format("write `{} << value`", v.name));
     return {};
   }
@@ -217,24 +234,31 @@ TypeId Checker::TargetRoot(ExprId id, size_t variable) {
           .At(v.span, "declared as a sensor here");
       return {};
     case VariableKind::kParam:
-      diagnostics_.Report(Kind::kKoordNotAssignable, span, fmt::format("parameter `{}` is fixed", v.name)).At(v.span, "declared here");
+      diagnostics_.Report(Kind::kKoordNotAssignable, span, fmt::format("parameter `{}` is fixed", v.name))
+          .At(v.span, "declared here");
       return {};
     case VariableKind::kAllread: {
-      const bool own = model_.RefOf(id).kind == RefKind::kCell && exprs_[exprs_[id].args[1]].kind == ExprKind::kPid;
+      const bool own =
+          model_.RefOf(id).kind == RefKind::kCell && exprs_[exprs_[id].args[1]].kind == ExprKind::kPid;
       if (own) return v.type;
-      diagnostics_.Report(Kind::kKoordAllreadOwnership, span, fmt::format("a robot can write only its own cell `{}[pid]`", v.name))
+      diagnostics_
+          .Report(Kind::kKoordAllreadOwnership, span,
+                  fmt::format("a robot can write only its own cell `{}[pid]`", v.name))
           .At(v.span, "declared `allread` here");
       return {};
     }
     case VariableKind::kAllwrite:
       if (place_ == Place::kEvent && atomic_ == 0) {
-        diagnostics_.Report(Kind::kKoordLostUpdate, span, fmt::format("another robot may write `{}` in the same round", v.name))
+        diagnostics_
+            .Report(Kind::kKoordLostUpdate, span,
+                    fmt::format("another robot may write `{}` in the same round", v.name))
             .Under("only the last writer's value stays")
             .Help("put the statements that decide this value into `atomic:`");
       }
       return v.type;
     case VariableKind::kLocal:
-    case VariableKind::kActuator: return v.type;
+    case VariableKind::kActuator:
+      return v.type;
   }
   return {};
 }

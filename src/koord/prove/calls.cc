@@ -28,7 +28,8 @@ TermId Executor::CallFunction(const lang::Expr& e, size_t index) {
 TermId Executor::Inline(const lang::Expr& e, const Function& f) {
   std::map<uint32_t, TermId> bindings;
   const std::vector<uint32_t>& parameters = model_.bound_by.at(f.def);
-  for (size_t i = 0; i < parameters.size(); ++i) bindings[parameters[i]] = EvalAs(e.args[i + 1], f.parameters[i]);
+  for (size_t i = 0; i < parameters.size(); ++i)
+    bindings[parameters[i]] = EvalAs(e.args[i + 1], f.parameters[i]);
   const SortId sort = vocabulary_.SortOf(f.result);
   // A function that ends without `return` returns some value of its type: a different one at each call.
   std::vector<TermId> key;
@@ -80,7 +81,9 @@ TermId Executor::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) 
       const TermId a = Eval(points[0]);
       const TermId b = Eval(points[1]);
       const bool numbers = arena_.sort(arena_.sort_of(a)).kind != expr::SortKind::kRecord;
-      const auto half = [&](TermId x, TermId y) { return arena_.Divide(arena_.Add(x, y), arena_.Number(arena_.Real(), Rational(2))); };
+      const auto half = [&](TermId x, TermId y) {
+        return arena_.Divide(arena_.Add(x, y), arena_.Number(arena_.Real(), Rational(2)));
+      };
       if (numbers) {
         const TermId x = As(a, arena_.Real());
         const TermId y = As(b, arena_.Real());
@@ -92,7 +95,8 @@ TermId Executor::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) 
       for (uint32_t i = 0; i < 3; ++i) parts.push_back(half(arena_.Field(a, i), arena_.Field(b, i)));
       return arena_.MakeRecord(arena_.sort_of(a), std::move(parts));
     }
-    case Builtin::kLen: return arena_.Length(Eval(e.args[1]));
+    case Builtin::kLen:
+      return arena_.Length(Eval(e.args[1]));
     case Builtin::kAbs: {
       const TermId a = Eval(e.args[1]);
       return arena_.Ite(arena_.Le(arena_.Number(arena_.sort_of(a), Rational(0)), a), a, arena_.Neg(a));
@@ -117,7 +121,8 @@ TermId Executor::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) 
     }
     case Builtin::kRect:
     case Builtin::kRemove:
-    case Builtin::kAppend: break;  // not values
+    case Builtin::kAppend:
+      break;  // not values
   }
   CHECK(false) << "a builtin that is no value got past the checker";
   return {};

@@ -1,6 +1,6 @@
-#include <functional>
-
 #include <fmt/format.h>
+
+#include <functional>
 
 #include "base/check.h"
 #include "koord/prove/executor.h"
@@ -38,7 +38,9 @@ TermId Executor::Value(ExprId e, TypeId type, const View& parameters, TermId rob
   frame_ = Frame{&parameters, nullptr, robot, false, &state, &effect, {}};
   const TermId value = EvalAs(e, type);
   if (!effect.checks.empty()) {
-    diagnostics_.Report(diag::Kind::kKoordUndefinedOperation, effect.checks[0].span, "this initial value may be undefined")
+    diagnostics_
+        .Report(diag::Kind::kKoordUndefinedOperation, effect.checks[0].span,
+                "this initial value may be undefined")
         .Help("compute it in `init`, behind a condition");
   }
   return value;
@@ -86,7 +88,8 @@ TermId Executor::EvalAs(ExprId id, TypeId type) {
   if (arena_.op(term) == expr::Op::kListMake && arena_.sort_of(term) != sort) {
     const SortId element = arena_.sort(sort).parts[0];
     std::vector<TermId> items;
-    for (const TermId item : std::vector<TermId>(arena_.args(term).begin(), arena_.args(term).end())) items.push_back(As(item, element));
+    for (const TermId item : std::vector<TermId>(arena_.args(term).begin(), arena_.args(term).end()))
+      items.push_back(As(item, element));
     return arena_.MakeList(element, std::move(items));
   }
   return As(term, sort);
@@ -96,33 +99,50 @@ TermId Executor::Eval(ExprId id) {
   const lang::Expr& e = exprs_[id];
   const Ref ref = model_.RefOf(id);
   switch (e.kind) {
-    case ExprKind::kError: break;
-    case ExprKind::kInt: return arena_.Number(arena_.Int(), *Rational::Parse(e.text));
-    case ExprKind::kFloat: return arena_.Number(arena_.Real(), Rational::Parse(e.text).value_or(Rational(0)));
-    case ExprKind::kString: return vocabulary_.StringLiteral(e.text);
-    case ExprKind::kBool: return arena_.Constant(e.text == "true");
-    case ExprKind::kPid: return Robot();
+    case ExprKind::kError:
+      break;
+    case ExprKind::kInt:
+      return arena_.Number(arena_.Int(), *Rational::Parse(e.text));
+    case ExprKind::kFloat:
+      return arena_.Number(arena_.Real(), Rational::Parse(e.text).value_or(Rational(0)));
+    case ExprKind::kString:
+      return vocabulary_.StringLiteral(e.text);
+    case ExprKind::kBool:
+      return arena_.Constant(e.text == "true");
+    case ExprKind::kPid:
+      return Robot();
     case ExprKind::kName:
     case ExprKind::kField:
     case ExprKind::kIndex:
       switch (ref.kind) {
-        case RefKind::kVariable: return ReadVariable(ref.index);
-        case RefKind::kCell: return ReadCell(ref.index, Eval(e.args[1]), id);
-        case RefKind::kPortOf: return ReadCell(ref.index, Eval(exprs_[e.args[0]].args[1]), id);
-        case RefKind::kBinding: return frame_.bindings.at(ref.index);
-        case RefKind::kMember: return arena_.Member(vocabulary_.SortOf(model_.TypeOf(id)), ref.index);
-        case RefKind::kSystemSize: return vocabulary_.robots();
-        case RefKind::kOpaqueField: return arena_.Apply(vocabulary_.Function(ref.index, ""), {Eval(e.args[0])});
+        case RefKind::kVariable:
+          return ReadVariable(ref.index);
+        case RefKind::kCell:
+          return ReadCell(ref.index, Eval(e.args[1]), id);
+        case RefKind::kPortOf:
+          return ReadCell(ref.index, Eval(exprs_[e.args[0]].args[1]), id);
+        case RefKind::kBinding:
+          return frame_.bindings.at(ref.index);
+        case RefKind::kMember:
+          return arena_.Member(vocabulary_.SortOf(model_.TypeOf(id)), ref.index);
+        case RefKind::kSystemSize:
+          return vocabulary_.robots();
+        case RefKind::kOpaqueField:
+          return arena_.Apply(vocabulary_.Function(ref.index, ""), {Eval(e.args[0])});
         case RefKind::kFunction:
         case RefKind::kBuiltin:
-        case RefKind::kNone: break;
+        case RefKind::kNone:
+          break;
       }
       if (e.kind == ExprKind::kField) return arena_.Field(Eval(e.args[0]), ref.index);
       CHECK(e.kind == ExprKind::kIndex) << "an unresolved name got past the checker: " << e.text;
       return Index(id, e);
-    case ExprKind::kCall: return Call(id, e);
-    case ExprKind::kUnary: return Unary(e);
-    case ExprKind::kBinary: return Binary(e);
+    case ExprKind::kCall:
+      return Call(id, e);
+    case ExprKind::kUnary:
+      return Unary(e);
+    case ExprKind::kBinary:
+      return Binary(e);
     case ExprKind::kList: {
       const SortId element = arena_.sort(vocabulary_.SortOf(model_.TypeOf(id))).parts[0];
       std::vector<TermId> items;
@@ -134,7 +154,8 @@ TermId Executor::Eval(ExprId id) {
       for (const ExprId item : e.args) items.push_back(Eval(item));
       return arena_.MakeRecord(vocabulary_.SortOf(model_.TypeOf(id)), std::move(items));
     }
-    case ExprKind::kQuantifier: return Quantifier(id, e);
+    case ExprKind::kQuantifier:
+      return Quantifier(id, e);
   }
   CHECK(false) << "an erroneous expression got past the checker";
   return {};
@@ -169,11 +190,13 @@ TermId Executor::Index(ExprId id, const lang::Expr& e) {
   const TermId index = Eval(e.args[1]);
   const TermId zero = arena_.IntNumber(0);
   if (model_.types.Is(model_.TypeOf(e.args[0]), TypeKind::kList)) {
-    Check(CheckKind::kIndex, exprs_[id].span, arena_.And(arena_.Le(zero, index), arena_.Lt(index, arena_.Length(base))));
+    Check(CheckKind::kIndex, exprs_[id].span,
+          arena_.And(arena_.Le(zero, index), arena_.Lt(index, arena_.Length(base))));
     return arena_.At(base, index);
   }
   if (const auto length = LengthBound(e.args[0])) {
-    Check(CheckKind::kIndex, exprs_[id].span, arena_.And(arena_.Le(zero, index), arena_.Lt(index, arena_.IntNumber(*length))));
+    Check(CheckKind::kIndex, exprs_[id].span,
+          arena_.And(arena_.Le(zero, index), arena_.Lt(index, arena_.IntNumber(*length))));
   }
   return arena_.Select(base, index);
 }
@@ -216,10 +239,14 @@ TermId Executor::Binary(const lang::Expr& e) {
 TermId Executor::Arithmetic(const lang::Expr& e) {
   TermId a = Eval(e.args[0]);
   TermId b = Eval(e.args[1]);
-  const auto is_record = [&](TermId t) { return arena_.sort(arena_.sort_of(t)).kind == expr::SortKind::kRecord; };
+  const auto is_record = [&](TermId t) {
+    return arena_.sort(arena_.sort_of(t)).kind == expr::SortKind::kRecord;
+  };
   if (is_record(a) || is_record(b)) {
     const SortId pos = arena_.sort_of(is_record(a) ? a : b);
-    const auto part = [&](TermId t, uint32_t i) { return is_record(t) ? arena_.Field(t, i) : As(t, arena_.Real()); };
+    const auto part = [&](TermId t, uint32_t i) {
+      return is_record(t) ? arena_.Field(t, i) : As(t, arena_.Real());
+    };
     if (e.text == "/") {
       Check(CheckKind::kDivision, exprs_[e.args[1]].span,
             arena_.Not(arena_.Eq(As(b, arena_.Real()), arena_.Number(arena_.Real(), Rational(0)))));
@@ -239,7 +266,8 @@ TermId Executor::Arithmetic(const lang::Expr& e) {
       arena_.sort(arena_.sort_of(b)).kind == expr::SortKind::kOpaque) {
     // Strings: what `+` makes of them does not matter to any proof, only that it is a function.
     const SortId string = vocabulary_.SortOf(model_.types.string());
-    const std::string name = fmt::format("concat {} {}", arena_.sort(arena_.sort_of(a)).name, arena_.sort(arena_.sort_of(b)).name);
+    const std::string name =
+        fmt::format("concat {} {}", arena_.sort(arena_.sort_of(a)).name, arena_.sort(arena_.sort_of(b)).name);
     return arena_.Apply(arena_.Declare(name, {arena_.sort_of(a), arena_.sort_of(b)}, string), {a, b});
   }
   a = As(a, arena_.sort_of(b));
@@ -248,7 +276,8 @@ TermId Executor::Arithmetic(const lang::Expr& e) {
   if (e.text == "-") return arena_.Sub(a, b);
   if (e.text == "*") return arena_.Mul(a, b);
   const SortId sort = arena_.sort_of(b);
-  Check(CheckKind::kDivision, exprs_[e.args[1]].span, arena_.Not(arena_.Eq(b, arena_.Number(sort, Rational(0)))));
+  Check(CheckKind::kDivision, exprs_[e.args[1]].span,
+        arena_.Not(arena_.Eq(b, arena_.Number(sort, Rational(0)))));
   if (e.text == "%") return arena_.Mod(a, b);
   return sort == arena_.Int() ? arena_.IntDiv(a, b) : arena_.Divide(a, b);
 }
@@ -290,7 +319,8 @@ TermId Executor::Quantifier(ExprId id, const lang::Expr& e) {
   };
   std::vector<Bound> all;
   for (size_t b = 0; b < e.binders.size(); ++b) {
-    for (const uint32_t binding : domains.bindings[b]) all.push_back({binding, domains.kinds[b], e.binders[b].domain});
+    for (const uint32_t binding : domains.bindings[b])
+      all.push_back({binding, domains.kinds[b], e.binders[b].domain});
   }
   const auto guard = [&](TermId range, TermId body) {
     return forall ? arena_.Implies(range, body) : arena_.And(range, body);
@@ -309,11 +339,12 @@ TermId Executor::Quantifier(ExprId id, const lang::Expr& e) {
     }
     const bool over_list = bound.kind == DomainKind::kList;
     const TermId list = over_list ? Eval(bound.list) : TermId{};
-    const TermId variable =
-        arena_.FreshBound(model_.bindings[bound.binding].name, over_list ? arena_.Int() : vocabulary_.SortOf(type));
+    const TermId variable = arena_.FreshBound(model_.bindings[bound.binding].name,
+                                              over_list ? arena_.Int() : vocabulary_.SortOf(type));
     TermId range = arena_.True();
     if (bound.kind == DomainKind::kRobots) range = vocabulary_.IsRobot(variable);
-    if (over_list) range = arena_.And(arena_.Le(arena_.IntNumber(0), variable), arena_.Lt(variable, arena_.Length(list)));
+    if (over_list)
+      range = arena_.And(arena_.Le(arena_.IntNumber(0), variable), arena_.Lt(variable, arena_.Length(list)));
     frame_.bindings[bound.binding] = over_list ? arena_.At(list, variable) : variable;
     quantified_.push_back(variable);
     conditions_.push_back(range);

@@ -1,6 +1,6 @@
-#include <functional>
-
 #include <fmt/format.h>
+
+#include <functional>
 
 #include "base/check.h"
 #include "koord/prove/executor.h"
@@ -31,7 +31,8 @@ Effect Executor::Finish(State& state, Effect effect) {
   effect.stops = state.stopped;
   effect.value = state.value;
   for (size_t v = 0; v < model_.variables.size(); ++v) {
-    if (model_.variables[v].kind == VariableKind::kAllread) effect.value[v] = arena_.Select(state.value[v], frame_.robot);
+    if (model_.variables[v].kind == VariableKind::kAllread)
+      effect.value[v] = arena_.Select(state.value[v], frame_.robot);
   }
   return effect;
 }
@@ -42,7 +43,8 @@ Effect Executor::Run(const EventDef& event, const View& start, TermId robot) {
   frame_ = Frame{&start, nullptr, robot, false, &state, &effect, {}};
   // Rule SelectEvent: the precondition is evaluated on the robot's own copy.
   const TermId guard = event.pre.valid() ? Eval(event.pre) : arena_.True();
-  const TermId runs = vocabulary_.robots_stop() ? arena_.Not(arena_.Select(start.stopped, robot)) : arena_.True();
+  const TermId runs =
+      vocabulary_.robots_stop() ? arena_.Not(arena_.Select(start.stopped, robot)) : arena_.True();
   effect.enabled = arena_.And(guard, runs);
   state.path = guard;
   Body(event.body);
@@ -69,9 +71,12 @@ TermId Executor::Live() const {
 }
 
 Executor::State Executor::Merge(TermId condition, const State& then, const State& otherwise) {
-  const auto pick = [&](TermId a, TermId b) { return a == b || !a.valid() ? a : arena_.Ite(condition, a, b); };
+  const auto pick = [&](TermId a, TermId b) {
+    return a == b || !a.valid() ? a : arena_.Ite(condition, a, b);
+  };
   State result;
-  for (size_t v = 0; v < then.value.size(); ++v) result.value.push_back(pick(then.value[v], otherwise.value[v]));
+  for (size_t v = 0; v < then.value.size(); ++v)
+    result.value.push_back(pick(then.value[v], otherwise.value[v]));
   result.broke = pick(then.broke, otherwise.broke);
   result.continued = pick(then.continued, otherwise.continued);
   result.ended = pick(then.ended, otherwise.ended);
@@ -92,42 +97,54 @@ void Executor::Execute(const Stmt& stmt) {
   if (live == arena_.False()) return;
   const auto set_flag = [&](TermId& flag) { flag = arena_.Or(flag, live); };
   switch (stmt.kind) {
-    case StmtKind::kAssign: return Assign(stmt.target, EvalAs(stmt.value, model_.TypeOf(stmt.target)));
+    case StmtKind::kAssign:
+      return Assign(stmt.target, EvalAs(stmt.value, model_.TypeOf(stmt.target)));
     case StmtKind::kAddAssign:
     case StmtKind::kIncrement: {
       const TypeId type = model_.TypeOf(stmt.target);
       const TermId old = Eval(stmt.target);
-      const TermId more = stmt.kind == StmtKind::kIncrement ? arena_.Number(arena_.sort_of(old), Rational(1)) : EvalAs(stmt.value, type);
+      const TermId more = stmt.kind == StmtKind::kIncrement ? arena_.Number(arena_.sort_of(old), Rational(1))
+                                                            : EvalAs(stmt.value, type);
       if (model_.types.IsNumeric(type)) return Assign(stmt.target, arena_.Add(old, more));
       if (arena_.sort(arena_.sort_of(old)).kind == expr::SortKind::kRecord) {
         std::vector<TermId> parts;
-        for (uint32_t i = 0; i < 3; ++i) parts.push_back(arena_.Add(arena_.Field(old, i), arena_.Field(more, i)));
+        for (uint32_t i = 0; i < 3; ++i)
+          parts.push_back(arena_.Add(arena_.Field(old, i), arena_.Field(more, i)));
         return Assign(stmt.target, arena_.MakeRecord(arena_.sort_of(old), std::move(parts)));
       }
       const SortId sort = arena_.sort_of(old);
-      const std::string name = fmt::format("concat {} {}", arena_.sort(sort).name, arena_.sort(arena_.sort_of(more)).name);
-      return Assign(stmt.target, arena_.Apply(arena_.Declare(name, {sort, arena_.sort_of(more)}, sort), {old, more}));
+      const std::string name =
+          fmt::format("concat {} {}", arena_.sort(sort).name, arena_.sort(arena_.sort_of(more)).name);
+      return Assign(stmt.target,
+                    arena_.Apply(arena_.Declare(name, {sort, arena_.sort_of(more)}, sort), {old, more}));
     }
-    case StmtKind::kCall: return Method(stmt);
+    case StmtKind::kCall:
+      return Method(stmt);
     case StmtKind::kStream:
       for (const ExprId e : stmt.operands) Eval(e);
       return;
     case StmtKind::kStop:
       state.stopped = arena_.Or(state.stopped, live);
       return set_flag(state.ended);
-    case StmtKind::kBreak: return set_flag(state.broke);
-    case StmtKind::kContinue: return set_flag(state.continued);
+    case StmtKind::kBreak:
+      return set_flag(state.broke);
+    case StmtKind::kContinue:
+      return set_flag(state.continued);
     case StmtKind::kReturn:
       if (stmt.value.valid() && state.result.valid()) {
         const TermId value = As(Eval(stmt.value), arena_.sort_of(state.result));
         state.result = arena_.Ite(live, value, state.result);
       }
       return set_flag(state.ended);
-    case StmtKind::kIf: return If(stmt);
-    case StmtKind::kForIn: return LoopIn(stmt);
-    case StmtKind::kForRange: return LoopRange(stmt);
+    case StmtKind::kIf:
+      return If(stmt);
+    case StmtKind::kForIn:
+      return LoopIn(stmt);
+    case StmtKind::kForRange:
+      return LoopRange(stmt);
     case StmtKind::kAtomic:
-      // One lock for each event; without it the event is a skip, so control gets past this point only with the lock.
+      // One lock for each event; without it the event is a skip, so control gets past this point only with
+      // the lock.
       state.locked = arena_.Or(state.locked, Reached());
       return Body(stmt.body);
   }
@@ -183,7 +200,8 @@ void Executor::LoopRange(const Stmt& stmt) {
   });
 }
 
-// Runs a loop with flags of its own; outside they stay as they are. Nothing happens where control does not get here.
+// Runs a loop with flags of its own; outside they stay as they are. Nothing happens where control does not
+// get here.
 void Executor::InLoop(const std::function<void()>& iterations) {
   State* whole = frame_.state;
   const TermId live = Live();
@@ -211,7 +229,9 @@ void Executor::LoopIn(const Stmt& stmt) {
   if (!bound || *bound > options_.unrolling) {
     diagnostics_.Report(Kind::kKoordUnboundedLoop, stmt.span, "nothing says how long this list can be")
         .Under("proofs unroll loops")
-        .Help("state it: `invariant bounded: len(...) <= 4`, or `assume M always len(M.port) <= 4` for a sensor");
+        .Help(
+            "state it: `invariant bounded: len(...) <= 4`, or `assume M always len(M.port) <= 4` for a "
+            "sensor");
     return;
   }
   const std::vector<uint32_t>& variables = model_.bound_by.at(&stmt);
@@ -255,7 +275,8 @@ std::optional<int64_t> Executor::LengthBound(ExprId list) {
   return ListBound(ref.index);
 }
 
-// Looks for `len(v) <= number` as a part of an invariant or assumption. Only a hint: CheckKind::kUnrolling proves it.
+// Looks for `len(v) <= number` as a part of an invariant or assumption. Only a hint: CheckKind::kUnrolling
+// proves it.
 std::optional<int64_t> Executor::ListBound(size_t variable) const {
   std::optional<int64_t> best;
   const auto is_length = [&](ExprId id) {
@@ -265,7 +286,8 @@ std::optional<int64_t> Executor::ListBound(size_t variable) const {
       return false;
     }
     const Ref ref = model_.RefOf(e.args[1]);
-    return (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell || ref.kind == RefKind::kPortOf) && ref.index == variable;
+    return (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell || ref.kind == RefKind::kPortOf) &&
+           ref.index == variable;
   };
   const std::function<void(ExprId)> visit = [&](ExprId id) {
     const lang::Expr& e = exprs_[id];
@@ -337,7 +359,8 @@ void Executor::Assign(ExprId target, TermId value) {
           arena_.And(arena_.Le(arena_.IntNumber(0), index), arena_.Lt(index, arena_.IntNumber(*length))));
   }
   // A cell of a shared array has a last writer of its own.
-  if (const Ref root = model_.RefOf(inner); root.kind == RefKind::kVariable) return AssignRoot(root.index, value, index);
+  if (const Ref root = model_.RefOf(inner); root.kind == RefKind::kVariable)
+    return AssignRoot(root.index, value, index);
   Assign(inner, arena_.Store(whole, index, value));
 }
 

@@ -8,8 +8,8 @@
 #include "diag/diagnostic.h"
 #include "koord/prove/vocabulary.h"
 
-/// Symbolic execution of Koord: expressions become terms, an event becomes its guard and the values that it leaves
-/// (Koord paper, Figs. 6-8; rules are named at the code that follows them).
+/// Symbolic execution of Koord: expressions become terms, an event becomes its guard and the values that it
+/// leaves (Koord paper, Figs. 6-8; rules are named at the code that follows them).
 namespace rondo::koord {
 
 /// What must hold for an operation to be defined, where control reaches it.
@@ -39,7 +39,7 @@ struct SharedWrite {
 /// What one robot does when it executes an event, in terms of the values at the start of the round.
 struct Effect {
   TermId enabled;
-  TermId locks;    ///< does it take the lock of the event?
+  TermId locks;  ///< does it take the lock of the event?
   TermId stops;
   std::vector<TermId> value;  ///< afterwards: its own cell of what exists for each robot, else the whole
   std::vector<SharedWrite> writes;
@@ -56,17 +56,18 @@ class Executor {
  public:
   Executor(Vocabulary& vocabulary, diag::Diagnostics& diagnostics, ExecutionOptions options = {});
 
-  /// Rule SelectEvent and the statements of the event, for `robot`, from `start`. Everything is read from the robot's
-  /// own copy: the values at `start` and its own writes.
+  /// Rule SelectEvent and the statements of the event, for `robot`, from `start`. Everything is read from the
+  /// robot's own copy: the values at `start` and its own writes.
   Effect Run(const EventDef& event, const View& start, TermId robot);
   /// The `init` blocks in order, as one event without guard.
   Effect RunInit(const View& start, TermId robot);
 
-  /// An expression of a specification at `view`. `robot` stands for the robot of names without one; it is only looked
-  /// at if there are such names. `old` is the moment of `old(...)`, or nullptr.
+  /// An expression of a specification at `view`. `robot` stands for the robot of names without one; it is
+  /// only looked at if there are such names. `old` is the moment of `old(...)`, or nullptr.
   TermId Specification(ExprId e, const View& view, TermId robot, const View* old,
                        const std::map<uint32_t, TermId>& bindings);
-  /// An initial value for `robot`: an expression over parameters, as a value of `type`. Reports it if it may have none.
+  /// An initial value for `robot`: an expression over parameters, as a value of `type`. Reports it if it may
+  /// have none.
   TermId Value(ExprId e, TypeId type, const View& parameters, TermId robot);
   bool expands_robots() const { return options_.expand_robots; }
   /// Did the last specification mention the robot?
@@ -81,13 +82,14 @@ class Executor {
     TermId ended;      // left the event or function
     TermId locked;
     TermId stopped;
-    TermId result;     // of the function that is being executed
+    TermId result;  // of the function that is being executed
   };
   struct Frame {
     const View* view = nullptr;
     const View* old = nullptr;
     TermId robot;
-    bool in_specification = false;  // a function is executed for its value: names mean what they mean at `view`
+    bool in_specification =
+        false;  // a function is executed for its value: names mean what they mean at `view`
     State* state = nullptr;
     Effect* effect = nullptr;
     std::map<uint32_t, TermId> bindings;

@@ -16,7 +16,8 @@ void Append(std::vector<Assertion>& to, std::vector<Assertion> from) {
 
 }  // namespace
 
-Problems::Problems(expr::Arena& arena, const Model& model, const Options& options, diag::Diagnostics& diagnostics)
+Problems::Problems(expr::Arena& arena, const Model& model, const Options& options,
+                   diag::Diagnostics& diagnostics)
     : arena_(arena),
       model_(model),
       options_(options),
@@ -43,7 +44,8 @@ TermId Problems::Refute(TermId goal) {
       const std::vector<TermId> args(arena_.args(goal).begin(), arena_.args(goal).end());
       expr::Substitution map;
       for (size_t i = 0; i + 1 < args.size(); ++i) {
-        map[args[i]] = arena_.FreshConstant("some " + arena_.symbol(arena_.symbol_of(args[i])).name, arena_.sort_of(args[i]));
+        map[args[i]] = arena_.FreshConstant("some " + arena_.symbol(arena_.symbol_of(args[i])).name,
+                                            arena_.sort_of(args[i]));
       }
       return Refute(Substitute(arena_, args.back(), map));
     }
@@ -51,10 +53,12 @@ TermId Problems::Refute(TermId goal) {
     case expr::Op::kOr: {
       const bool conjunction = arena_.op(goal) == expr::Op::kAnd;
       std::vector<TermId> parts;
-      for (const TermId part : std::vector<TermId>(arena_.args(goal).begin(), arena_.args(goal).end())) parts.push_back(Refute(part));
+      for (const TermId part : std::vector<TermId>(arena_.args(goal).begin(), arena_.args(goal).end()))
+        parts.push_back(Refute(part));
       return conjunction ? arena_.Or(std::move(parts)) : arena_.And(std::move(parts));
     }
-    default: return arena_.Not(goal);  // nothing universal is in sight
+    default:
+      return arena_.Not(goal);  // nothing universal is in sight
   }
 }
 
@@ -167,7 +171,8 @@ Problem Problems::Step(size_t invariant, std::optional<size_t> action, bool reac
 Problem Problems::Follows(size_t invariant, const std::vector<size_t>& premises) {
   const View& view = round_.start();
   std::vector<Assertion> assertions{{Refute(theory_.Invariant(invariant, view)), ""}};
-  for (const size_t p : premises) assertions.push_back({theory_.Invariant(p, view), "invariant " + theory_.InvariantName(p)});
+  for (const size_t p : premises)
+    assertions.push_back({theory_.Invariant(p, view), "invariant " + theory_.InvariantName(p)});
   Append(assertions, theory_.PortFacts(view));
   return Ground(std::move(assertions), Everyone());
 }
@@ -179,7 +184,8 @@ const std::vector<DefinednessCheck>& Problems::ChecksOf(size_t action) {
 // Action 0 is `init`: it runs from the declared values.
 Problem Problems::Defined(size_t action) {
   std::vector<TermId> undefined;
-  for (const DefinednessCheck& check : ChecksOf(action)) undefined.push_back(arena_.And(check.reached, Refute(check.holds)));
+  for (const DefinednessCheck& check : ChecksOf(action))
+    undefined.push_back(arena_.And(check.reached, Refute(check.holds)));
   return Undefined(action, arena_.Or(std::move(undefined)), robot_);
 }
 
@@ -203,7 +209,8 @@ Problem Problems::Undefined(size_t action, TermId undefined, TermId robot) {
 Problem Problems::ImpossibleSummary(size_t f) {
   Problem problem;
   problem.query.arena = &arena_;
-  problem.query.assertions = {{theory_.NoResult(f), ""}, {arena_.Le(arena_.IntNumber(1), vocabulary_.robots()), ""}};
+  problem.query.assertions = {{theory_.NoResult(f), ""},
+                              {arena_.Le(arena_.IntNumber(1), vocabulary_.robots()), ""}};
   for (const Assertion& a : theory_.Facts()) problem.query.assertions.push_back(a);
   problem.assertions = problem.query.assertions;
   return problem;
@@ -227,11 +234,13 @@ Problem Problems::SomeInitialState() {
 Problem Problems::SomeValues(size_t action) {
   std::vector<Assertion> assertions{{vocabulary_.IsRobot(robot_), ""}};
   const Effect& effect = round_.EffectOf(action, robot_);
-  // Mentions each value that the action computes, so that the summaries of the functions it calls come into play.
+  // Mentions each value that the action computes, so that the summaries of the functions it calls come into
+  // play.
   std::vector<TermId> mentioned = effect.value;
   mentioned.push_back(effect.enabled);
   for (const TermId value : mentioned) {
-    if (value.valid()) assertions.push_back({arena_.Eq(arena_.FreshConstant("value", arena_.sort_of(value)), value), ""});
+    if (value.valid())
+      assertions.push_back({arena_.Eq(arena_.FreshConstant("value", arena_.sort_of(value)), value), ""});
   }
   Append(assertions, theory_.PortFacts(round_.start()));
   return Ground(std::move(assertions), {});
@@ -254,7 +263,9 @@ Problem Problems::SomePromise(size_t p, bool with) {
     for (size_t v = 0; v < model_.variables.size(); ++v) {
       // The environment moves sensors only.
       if (model_.variables[v].kind != VariableKind::kActuator) continue;
-      assertions.push_back({arena_.Eq(arena_.Select(round_.end().value[v], robot_), arena_.Select(round_.start().value[v], robot_)), ""});
+      assertions.push_back({arena_.Eq(arena_.Select(round_.end().value[v], robot_),
+                                      arena_.Select(round_.start().value[v], robot_)),
+                            ""});
     }
     Append(assertions, theory_.PortFacts(round_.end()));
   }

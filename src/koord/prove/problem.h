@@ -13,13 +13,13 @@ namespace rondo::koord {
 struct Problem {
   std::vector<solve::Assertion> assertions;  ///< with quantifiers
   solve::Query query;                        ///< without; see `Problems::Ground`
-  bool complete = false;  ///< nothing was lost on the way: satisfiable means satisfiable
+  bool complete = false;                     ///< nothing was lost on the way: satisfiable means satisfiable
   std::vector<TermId> participants;
-  std::unordered_set<TermId> lists;       ///< whose axioms are among the assertions
+  std::unordered_set<TermId> lists;  ///< whose axioms are among the assertions
 };
 
-/// States the proof obligations of docs/theory.md for one program and one number of robots: any (symbolic), or a
-/// small fixed one with all quantifiers over robots spelled out, whose models are witnesses.
+/// States the proof obligations of docs/theory.md for one program and one number of robots: any (symbolic),
+/// or a small fixed one with all quantifiers over robots spelled out, whose models are witnesses.
 class Problems {
  public:
   struct Options {
@@ -35,8 +35,9 @@ class Problems {
 
   /// [Init] every initial state satisfies invariant i.
   Problem Initially(size_t invariant);
-  /// [Step] from a state that satisfies all invariants, invariant i holds at every moment of a round in which `action`
-  /// is the first, in program order, that a participant takes (0: all skip; none: any round). `reachable`: the state is initial as well.
+  /// [Step] from a state that satisfies all invariants, invariant i holds at every moment of a round in which
+  /// `action` is the first, in program order, that a participant takes (0: all skip; none: any round).
+  /// `reachable`: the state is initial as well.
   Problem Step(size_t invariant, std::optional<size_t> action, bool reachable);
   /// [Follows] at any moment, invariant i follows from the premises: invariants that hold at the same moment.
   Problem Follows(size_t invariant, const std::vector<size_t>& premises);
@@ -54,8 +55,8 @@ class Problems {
   Problem SomeValues(size_t action);
   /// [Sat] some state that satisfies the invariants enables the event.
   Problem SomeEnabled(size_t action);
-  /// [Sat] where the condition of promise `p` holds, the environment can keep it and all others; `with`: and keeps them,
-  /// else only the condition holds.
+  /// [Sat] where the condition of promise `p` holds, the environment can keep it and all others; `with`: and
+  /// keeps them, else only the condition holds.
   Problem SomePromise(size_t p, bool with);
   /// [Now] where the invariants and the condition of promise `p` hold, the promise holds at t = 0.
   Problem PromiseNow(size_t p);

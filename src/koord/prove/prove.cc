@@ -1,10 +1,10 @@
 #include "koord/prove/prove.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <mutex>
 #include <set>
-
-#include <fmt/format.h>
 
 #include "base/file.h"
 #include "base/parallel.h"
@@ -19,19 +19,22 @@ using Clock = std::chrono::steady_clock;
 
 class Prover {
  public:
-  Prover(const diag::SourceSet& sources, const Model& model, const ProveOptions& options, diag::Diagnostics& diagnostics)
+  Prover(const diag::SourceSet& sources, const Model& model, const ProveOptions& options,
+         diag::Diagnostics& diagnostics)
       : sources_(sources), model_(model), options_(options), diagnostics_(diagnostics) {}
 
   Report Run() {
     const size_t errors = diagnostics_.errors();
-    // Stated once here for names and for what cannot be proved at all; each task states its own again, in parallel.
+    // Stated once here for names and for what cannot be proved at all; each task states its own again, in
+    // parallel.
     expr::Arena arena;
     Problems problems(arena, model_, {options_.robots, false}, diagnostics_);
     problems.theory().DeclaredValues(problems.round().start());
     problems.theory().Background();
     if (diagnostics_.errors() > errors) return std::move(report_);
     tasks_ = ListTasks(problems);
-    for (const Task& task : tasks_) report_.obligations += task.kind == TaskKind::kRound ? problems.columns() : task.IsObligation() ? 1 : 0;
+    for (const Task& task : tasks_)
+      report_.obligations += task.kind == TaskKind::kRound ? problems.columns() : task.IsObligation() ? 1 : 0;
     Solve(All(), Effort::kFew);
     TryConsequences();
     Solve(Undecided(), Effort::kMore);
@@ -42,7 +45,8 @@ class Prover {
     std::vector<Task*> rest;
     for (Task* task : Undecided()) {
       const auto it = witnesses_.find(task->subject);
-      if (task->kind == TaskKind::kDefined || it == witnesses_.end() || !it->second.confirmed) rest.push_back(task);
+      if (task->kind == TaskKind::kDefined || it == witnesses_.end() || !it->second.confirmed)
+        rest.push_back(task);
     }
     Solve(rest, Effort::kMost);
     report_.interrupted = options_.stop.cancelled();
@@ -98,8 +102,8 @@ class Prover {
     });
   }
 
-  // An invariant that other invariants imply needs no induction of its own. The premises are proved by induction, so
-  // the argument is not circular: at each moment first they hold, then what follows from them.
+  // An invariant that other invariants imply needs no induction of its own. The premises are proved by
+  // induction, so the argument is not circular: at each moment first they hold, then what follows from them.
   void TryConsequences() {
     std::vector<size_t> premises;
     for (const Task& task : tasks_) {
@@ -108,7 +112,8 @@ class Prover {
     std::vector<Task> attempts;
     for (const Task* task : Undecided()) {
       if (task->kind != TaskKind::kRound) continue;
-      attempts.push_back({TaskKind::kFollows, task->subject, 0, task->name, solve::Unknown{"not asked"}, task->seconds, premises});
+      attempts.push_back({TaskKind::kFollows, task->subject, 0, task->name, solve::Unknown{"not asked"},
+                          task->seconds, premises});
     }
     for (const Effort effort : {Effort::kFew, Effort::kMore}) {
       std::vector<Task*> todo;
@@ -143,7 +148,8 @@ class Prover {
       }
       const solve::Budget budget{std::min(options_.timeout, std::chrono::milliseconds(1000)), false};
       const auto action = task.kind == TaskKind::kInitially ? std::nullopt : std::optional(task.action);
-      auto witness = FindWitness(model_, task.subject, action, options_.robots, *options_.solver, budget, options_.stop);
+      auto witness =
+          FindWitness(model_, task.subject, action, options_.robots, *options_.solver, budget, options_.stop);
       const std::scoped_lock lock(mutex);
       if (witness) witnesses_.emplace(task.subject, std::move(*witness));
     });
@@ -175,14 +181,17 @@ class Prover {
   }
 
   void Compare(const Task& task, const solve::Answer& other) {
-    if (std::holds_alternative<solve::Unknown>(other) || std::holds_alternative<solve::Unknown>(task.answer)) {
+    if (std::holds_alternative<solve::Unknown>(other) ||
+        std::holds_alternative<solve::Unknown>(task.answer)) {
       ++report_.cross_unknown;
       return;
     }
     ++report_.cross_checked;
     if (task.answer.index() == other.index()) return;
     report_.disagreement = true;
-    const auto word = [](const solve::Answer& a) { return std::holds_alternative<solve::Unsat>(a) ? "unsat" : "sat"; };
+    const auto word = [](const solve::Answer& a) {
+      return std::holds_alternative<solve::Unsat>(a) ? "unsat" : "sat";
+    };
     diagnostics_
         .Report(diag::Kind::kKoordDisagreement, {},
                 fmt::format("{} says {} and {} says {} of `{}`", options_.solver->name(), word(task.answer),
@@ -205,12 +214,16 @@ class Prover {
 
   void MakeRows(Problems& problems) {
     const std::vector<std::string>& actions = problems.round().actions();
-    for (size_t i = 0; i < problems.theory().invariants(); ++i) report_.rows.push_back({problems.theory().InvariantName(i), {}, {}, {}});
+    for (size_t i = 0; i < problems.theory().invariants(); ++i)
+      report_.rows.push_back({problems.theory().InvariantName(i), {}, {}, {}});
     Row defined{"well-defined", {}, {}, {}};
     for (const Task& task : tasks_) {
-      if (task.kind == TaskKind::kInitially) report_.rows[task.subject].cells.push_back(MakeCell(task, "initially"));
-      if (task.kind == TaskKind::kStep) report_.rows[task.subject].cells.push_back(MakeCell(task, actions[task.action]));
-      if (task.kind == TaskKind::kDefined) defined.cells.push_back(MakeCell(task, task.action == 0 ? "init" : actions[task.action]));
+      if (task.kind == TaskKind::kInitially)
+        report_.rows[task.subject].cells.push_back(MakeCell(task, "initially"));
+      if (task.kind == TaskKind::kStep)
+        report_.rows[task.subject].cells.push_back(MakeCell(task, actions[task.action]));
+      if (task.kind == TaskKind::kDefined)
+        defined.cells.push_back(MakeCell(task, task.action == 0 ? "init" : actions[task.action]));
       if (task.kind != TaskKind::kRound) continue;
       for (const size_t a : Columns(problems)) {
         report_.rows[task.subject].cells.push_back(MakeCell(task, actions[a]));
@@ -229,21 +242,25 @@ class Prover {
       case TaskKind::kStep:
       case TaskKind::kFollows:
       case TaskKind::kDefined:
-      case TaskKind::kSomeCondition: return;
+      case TaskKind::kSomeCondition:
+        return;
       case TaskKind::kImpossible:
         if (std::holds_alternative<solve::Sat>(task.answer)) {
           std::vector<std::string> names;
           for (const SummaryDef* def : model_.summaries) {
             if (problems.theory().FunctionOf(*def) == task.subject) names.push_back(Theory::NameOf(*def));
           }
-          reporter.Contradiction(fmt::format("for some arguments no result of `{}` is possible", model_.functions[task.subject].name), names);
+          reporter.Contradiction(fmt::format("for some arguments no result of `{}` is possible",
+                                             model_.functions[task.subject].name),
+                                 names);
         }
         return;
       case TaskKind::kSomeInitial:
         if (unsat != nullptr) reporter.Contradiction("no initial state is possible", unsat->core);
         return;
       case TaskKind::kSomeValues:
-        if (unsat != nullptr) reporter.Contradiction(fmt::format("what `{}` computes cannot exist", action), unsat->core);
+        if (unsat != nullptr)
+          reporter.Contradiction(fmt::format("what `{}` computes cannot exist", action), unsat->core);
         return;
       case TaskKind::kSomeEnabled:
         if (unsat != nullptr) never_.emplace_back(task.action, unsat->core);
@@ -251,7 +268,13 @@ class Prover {
       case TaskKind::kSomePromise: {
         if (unsat == nullptr) return;
         // A promise whose condition is never true promises nothing.
-        Task condition{TaskKind::kSomeCondition, task.subject, 0, "sanity.condition", solve::Unknown{"not asked"}, 0, {}};
+        Task condition{TaskKind::kSomeCondition,
+                       task.subject,
+                       0,
+                       "sanity.condition",
+                       solve::Unknown{"not asked"},
+                       0,
+                       {}};
         Solve({&condition}, Effort::kFew);
         if (!condition.Proved()) reporter.Contradiction("no controller can keep this promise", unsat->core);
         return;
@@ -274,14 +297,17 @@ class Prover {
       for (const Cell& cell : row.cells) used.insert(cell.core.begin(), cell.core.end());
     }
     std::vector<std::pair<std::string, diag::Span>> stated;
-    for (const AssumeDef* def : model_.assumptions) stated.emplace_back(problems.theory().NameOf(*def), def->span);
+    for (const AssumeDef* def : model_.assumptions)
+      stated.emplace_back(problems.theory().NameOf(*def), def->span);
     for (const SummaryDef* def : model_.summaries) stated.emplace_back(Theory::NameOf(*def), def->span);
     for (const auto& [name, span] : stated) {
       if (used.contains(name)) {
-        if (std::find(report_.assumed.begin(), report_.assumed.end(), name) == report_.assumed.end()) report_.assumed.push_back(name);
+        if (std::find(report_.assumed.begin(), report_.assumed.end(), name) == report_.assumed.end())
+          report_.assumed.push_back(name);
       } else if (report_.AllProved()) {
         report_.unused.push_back(name);
-        diagnostics_.Report(diag::Kind::kKoordUnusedAssumption, span, fmt::format("no proof uses `{}`", name));
+        diagnostics_.Report(diag::Kind::kKoordUnusedAssumption, span,
+                            fmt::format("no proof uses `{}`", name));
       }
     }
     report_.unconstrained = problems.theory().Unconstrained();
@@ -311,7 +337,8 @@ bool Report::AnyFailed() const {
          });
 }
 
-Report Prove(const diag::SourceSet& sources, const Model& model, const ProveOptions& options, diag::Diagnostics& diagnostics) {
+Report Prove(const diag::SourceSet& sources, const Model& model, const ProveOptions& options,
+             diag::Diagnostics& diagnostics) {
   return Prover(sources, model, options, diagnostics).Run();
 }
 

@@ -16,8 +16,8 @@
 namespace rondo::koord {
 
 struct ProveOptions {
-  std::optional<int64_t> robots;  ///< fixes N_sys; otherwise the proof is for every N_sys >= 1
-  unsigned jobs = 0;              ///< threads; 0: one for each core
+  std::optional<int64_t> robots;              ///< fixes N_sys; otherwise the proof is for every N_sys >= 1
+  unsigned jobs = 0;                          ///< threads; 0: one for each core
   std::chrono::milliseconds timeout{10'000};  ///< for each question to the solver
   const solve::Solver* solver = nullptr;
   const solve::Solver* cross_check = nullptr;  ///< decides every question a second time
@@ -65,14 +65,14 @@ struct Report {
   size_t obligations = 0;
   size_t cross_checked = 0;
   size_t cross_unknown = 0;
-  std::vector<std::string> problems;       ///< failures to write files
+  std::vector<std::string> problems;  ///< failures to write files
 
   bool AllProved() const;
   bool AnyFailed() const;
 };
 
-/// Proves the invariants of a program that passed the checker. Failures, contradictions, unused assumptions and what
-/// could not be decided are reported as diagnostics as well.
+/// Proves the invariants of a program that passed the checker. Failures, contradictions, unused assumptions
+/// and what could not be decided are reported as diagnostics as well.
 Report Prove(const diag::SourceSet& sources, const Model& model, const ProveOptions& options,
              diag::Diagnostics& diagnostics);
 

@@ -1,9 +1,9 @@
 #include "koord/prove/report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
-
-#include <fmt/format.h>
 
 namespace rondo::koord {
 
@@ -28,11 +28,13 @@ void Reporter::Contradiction(const std::string& what, const std::vector<std::str
   std::vector<Span> spans;
   for (const std::string& name : core) {
     const Span span = SpanOf(name);
-    if (span.file.valid() && std::find(spans.begin(), spans.end(), span) == spans.end()) spans.push_back(span);
+    if (span.file.valid() && std::find(spans.begin(), spans.end(), span) == spans.end())
+      spans.push_back(span);
   }
   Span primary = spans.empty() ? Span{} : spans[0];
   if (spans.empty() && !model_.events.empty()) primary = model_.events[0]->span;
-  auto& report = diagnostics_.Report(Kind::kKoordContradiction, primary, "the assumptions contradict each other: " + what);
+  auto& report = diagnostics_.Report(Kind::kKoordContradiction, primary,
+                                     "the assumptions contradict each other: " + what);
   if (!spans.empty()) report.Under(core.size() == 1 ? "this cannot be true" : "cannot be true together");
   for (size_t i = 1; i < spans.size(); ++i) report.At(spans[i], "with this");
   report.Help("from a contradiction everything follows: no verdict below counts");
@@ -41,7 +43,8 @@ void Reporter::Contradiction(const std::string& what, const std::vector<std::str
 void Reporter::NeverEnabled(size_t action, const std::vector<std::string>& core) {
   const EventDef& event = *model_.events[action - 1];
   const Span span = event.pre.valid() ? model_.program->exprs[event.pre].span : event.span;
-  auto& report = diagnostics_.Report(Kind::kKoordNeverEnabled, span, fmt::format("`{}` can never happen", event.name));
+  auto& report =
+      diagnostics_.Report(Kind::kKoordNeverEnabled, span, fmt::format("`{}` can never happen", event.name));
   report.Under("no state that satisfies the invariants makes this true");
   for (const std::string& name : core) {
     if (const Span other = SpanOf(name); other.file.valid()) report.At(other, "excluded by this");
@@ -56,14 +59,19 @@ void Reporter::Unrealisable(size_t p) {
     Problems small(arena, model_, {n, true}, ignored);
     const Problem problem = small.PromiseNow(p);
     solve::Query query = problem.query;
-    if (!problem.complete) query.assertions.insert(query.assertions.end(), problem.assertions.begin(), problem.assertions.end());
+    if (!problem.complete)
+      query.assertions.insert(query.assertions.end(), problem.assertions.begin(), problem.assertions.end());
     const solve::Budget budget{std::chrono::milliseconds(1000), false};
     if (!std::holds_alternative<solve::Sat>(options_.solver->Check(query, budget, options_.stop))) continue;
     const Theory::Promise promise = problems_.promises()[p];
-    diagnostics_.Report(Kind::kKoordUnrealisable, promise.def->span, fmt::format("`{}` promises at once what need not hold yet", promise.name))
+    diagnostics_
+        .Report(Kind::kKoordUnrealisable, promise.def->span,
+                fmt::format("`{}` promises at once what need not hold yet", promise.name))
         .Under("its condition can be true while its promise is false")
-        .Note("the promise must hold at every moment after the program transition, the first one included;\na controller "
-              "that starts where it is false has broken it already")
+        .Note(
+            "the promise must hold at every moment after the program transition, the first one included;\na "
+            "controller "
+            "that starts where it is false has broken it already")
         .Help("strengthen the condition, or add an invariant that excludes such a state");
     return;
   }
@@ -82,7 +90,8 @@ void Reporter::Failures() {
   if (report_.contradiction || report_.interrupted) return;
   for (size_t i = 0; i < report_.rows.size(); ++i) {
     Row& row = report_.rows[i];
-    const auto open = std::find_if(row.cells.begin(), row.cells.end(), [](const Cell& c) { return c.outcome != Outcome::kProved; });
+    const auto open = std::find_if(row.cells.begin(), row.cells.end(),
+                                   [](const Cell& c) { return c.outcome != Outcome::kProved; });
     if (open == row.cells.end()) continue;
     if (i < model_.invariants.size()) {
       FailedInvariant(i);
@@ -100,7 +109,9 @@ void Reporter::FailedInvariant(size_t i) {
   const bool confirmed = it != witnesses_.end() && it->second.confirmed;
   for (Cell& cell : row.cells) {
     if (cell.outcome == Outcome::kProved) continue;
-    const bool this_one = confirmed && cell.column == (it->second.action ? problems_.round().actions()[*it->second.action] : "initially");
+    const bool this_one =
+        confirmed &&
+        cell.column == (it->second.action ? problems_.round().actions()[*it->second.action] : "initially");
     cell.outcome = this_one ? Outcome::kFailed : Outcome::kUnknown;
     if (!this_one && cell.reason.empty()) cell.reason = "a possible counterexample could not be confirmed";
   }
@@ -108,7 +119,8 @@ void Reporter::FailedInvariant(size_t i) {
     Told(row, def, it->second);
     return;
   }
-  const auto open = std::find_if(row.cells.begin(), row.cells.end(), [](const Cell& c) { return c.outcome != Outcome::kProved; });
+  const auto open = std::find_if(row.cells.begin(), row.cells.end(),
+                                 [](const Cell& c) { return c.outcome != Outcome::kProved; });
   Undecided(row, *open, model_.program->exprs[def.body].span, it == witnesses_.end() ? nullptr : &it->second);
 }
 
@@ -118,25 +130,31 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
   const std::optional<size_t> action = witness.action;
   if (!action) {
     row.verdict = Verdict::kRefuted;
-    diagnostics_.Report(Kind::kKoordRefuted, required, fmt::format("`{}` is false in an initial state", row.name))
+    diagnostics_
+        .Report(Kind::kKoordRefuted, required, fmt::format("`{}` is false in an initial state", row.name))
         .Under("required here")
-        .Note(fmt::format("an initial state that the declarations and assumptions allow ({}):\n{}", size, witness.table))
+        .Note(fmt::format("an initial state that the declarations and assumptions allow ({}):\n{}", size,
+                          witness.table))
         .Help("give variables initial values, or state what holds at the start: `assume initially: ...`");
     return;
   }
   row.verdict = witness.reachable ? Verdict::kRefuted : Verdict::kNotInductive;
   const Kind kind = witness.reachable ? Kind::kKoordRefuted : Kind::kKoordNotInductive;
-  const std::string who = *action == 0 ? "the environment" : fmt::format("`{}`", model_.events[*action - 1]->name);
+  const std::string who =
+      *action == 0 ? "the environment" : fmt::format("`{}`", model_.events[*action - 1]->name);
   const Span where = *action == 0 ? required : model_.events[*action - 1]->span;
-  auto& report = diagnostics_.Report(kind, where, witness.reachable ? fmt::format("{} violates `{}`", who, row.name)
-                                                                    : fmt::format("{} does not preserve `{}`", who, row.name));
+  auto& report =
+      diagnostics_.Report(kind, where,
+                          witness.reachable ? fmt::format("{} violates `{}`", who, row.name)
+                                            : fmt::format("{} does not preserve `{}`", who, row.name));
   if (*action == 0) {
     report.Under("required at every moment");
   } else {
     report.At(required, "required here");
   }
   report.Note(fmt::format("one round that breaks it, from {} ({}):\n{}",
-                          witness.reachable ? "an initial state" : "a state that satisfies every invariant", size, witness.table));
+                          witness.reachable ? "an initial state" : "a state that satisfies every invariant",
+                          size, witness.table));
   if (!witness.reachable) report.Note("this state may be unreachable: the induction could not exclude it");
   if (witness.environment) {
     report.Help("say what the controller guarantees: `assume M when ... always ...`");
@@ -158,18 +176,31 @@ void Reporter::FailedDefinedness(Cell& cell, size_t action) {
       for (int64_t r = 0; r < n; ++r) {
         Problem problem = small.DefinedAt(action, c, r);
         solve::Query query = problem.query;
-        if (!problem.complete) query.assertions.insert(query.assertions.end(), problem.assertions.begin(), problem.assertions.end());
+        if (!problem.complete)
+          query.assertions.insert(query.assertions.end(), problem.assertions.begin(),
+                                  problem.assertions.end());
         const solve::Budget budget{std::min(options_.timeout, std::chrono::milliseconds(2000)), false};
-        if (!std::holds_alternative<solve::Sat>(options_.solver->Check(query, budget, options_.stop))) continue;
+        if (!std::holds_alternative<solve::Sat>(options_.solver->Check(query, budget, options_.stop)))
+          continue;
         row.verdict = Verdict::kNotInductive;
         cell.outcome = Outcome::kFailed;
         const char* what = "";
         switch (checks[c].kind) {
-          case CheckKind::kIndex: what = "this index can be out of range"; break;
-          case CheckKind::kDivision: what = "this divisor can be zero"; break;
-          case CheckKind::kRemove: what = "the item to remove may not be in the list"; break;
-          case CheckKind::kUnrolling: what = "the list can be longer than its stated bound"; break;
-          case CheckKind::kReturn: what = "this function can end without a value"; break;
+          case CheckKind::kIndex:
+            what = "this index can be out of range";
+            break;
+          case CheckKind::kDivision:
+            what = "this divisor can be zero";
+            break;
+          case CheckKind::kRemove:
+            what = "the item to remove may not be in the list";
+            break;
+          case CheckKind::kUnrolling:
+            what = "the list can be longer than its stated bound";
+            break;
+          case CheckKind::kReturn:
+            what = "this function can end without a value";
+            break;
         }
         diagnostics_.Report(Kind::kKoordUndefinedOperation, checks[c].span, what)
             .Under(fmt::format("for robot {} of {}, in a state that satisfies every invariant", r, n))
@@ -183,11 +214,14 @@ void Reporter::FailedDefinedness(Cell& cell, size_t action) {
 
 void Reporter::Undecided(Row& row, const Cell& cell, Span span, const Witness* candidate) {
   row.verdict = Verdict::kUnknown;
-  auto& report = diagnostics_.Report(Kind::kKoordUnknown, span, fmt::format("`{}` could not be decided {}", row.name, Scope()));
+  auto& report = diagnostics_.Report(Kind::kKoordUnknown, span,
+                                     fmt::format("`{}` could not be decided {}", row.name, Scope()));
   report.Under(fmt::format("obligation `{}`", cell.column));
   if (candidate != nullptr) {
-    report.Note(fmt::format("a possible counterexample (N_sys = {}), not checked against every value that the functions may take:\n{}",
-                            candidate->robots, candidate->table));
+    report.Note(
+        fmt::format("a possible counterexample (N_sys = {}), not checked against every value that the "
+                    "functions may take:\n{}",
+                    candidate->robots, candidate->table));
     report.Help("state more of what the functions and ports guarantee, if this cannot happen");
   } else {
     report.Note(fmt::format("{}: {}", options_.solver->name(), cell.reason));
@@ -200,19 +234,24 @@ void Reporter::Verdicts() {
   if (report_.contradiction || report_.interrupted || report_.disagreement) {
     for (Row& row : report_.rows) {
       row.verdict = Verdict::kUnknown;
-      row.because = report_.contradiction ? "the assumptions contradict each other" : report_.interrupted ? "interrupted" : "solvers disagree";
+      row.because = report_.contradiction ? "the assumptions contradict each other"
+                    : report_.interrupted ? "interrupted"
+                                          : "solvers disagree";
     }
     return;
   }
   std::set<std::string> standing;
   const auto all_proved = [](const Row& row) {
-    return std::all_of(row.cells.begin(), row.cells.end(), [](const Cell& c) { return c.outcome == Outcome::kProved; });
+    return std::all_of(row.cells.begin(), row.cells.end(),
+                       [](const Cell& c) { return c.outcome == Outcome::kProved; });
   };
-  // What operations mean where they are undefined is open, so a step proof is worth what the row `well-defined` is worth.
+  // What operations mean where they are undefined is open, so a step proof is worth what the row
+  // `well-defined` is worth.
   const bool has_defined = report_.rows.size() > model_.invariants.size();
   const std::string defined = "the row `well-defined`";
   for (size_t i = 0; i < report_.rows.size(); ++i) {
-    if (all_proved(report_.rows[i])) standing.insert(i < model_.invariants.size() ? "invariant " + report_.rows[i].name : defined);
+    if (all_proved(report_.rows[i]))
+      standing.insert(i < model_.invariants.size() ? "invariant " + report_.rows[i].name : defined);
   }
   if (!has_defined) standing.insert(defined);
   std::map<std::string, std::string> fell;

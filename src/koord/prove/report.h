@@ -9,9 +9,16 @@ namespace rondo::koord {
 /// Turns what the solver said into verdicts and diagnostics that a robotics engineer can act on.
 class Reporter {
  public:
-  Reporter(const diag::SourceSet& sources, const Model& model, const ProveOptions& options, Problems& problems,
-           diag::Diagnostics& diagnostics, Report& report, const std::map<size_t, Witness>& witnesses)
-      : sources_(sources), model_(model), options_(options), problems_(problems), diagnostics_(diagnostics), report_(report), witnesses_(witnesses) {}
+  Reporter(const diag::SourceSet& sources, const Model& model, const ProveOptions& options,
+           Problems& problems, diag::Diagnostics& diagnostics, Report& report,
+           const std::map<size_t, Witness>& witnesses)
+      : sources_(sources),
+        model_(model),
+        options_(options),
+        problems_(problems),
+        diagnostics_(diagnostics),
+        report_(report),
+        witnesses_(witnesses) {}
 
   /// The assumptions named in `core` cannot all be true.
   void Contradiction(const std::string& what, const std::vector<std::string>& core);

@@ -1,8 +1,8 @@
 #include "koord/prove/round.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "expr/substitute.h"
 
@@ -52,14 +52,18 @@ const Effect& Round::EffectOf(size_t action, TermId robot) {
   effect.locks = at(general.locks);
   effect.stops = at(general.stops);
   for (const TermId v : general.value) effect.value.push_back(at(v));
-  for (const SharedWrite& w : general.writes) effect.writes.push_back({w.variable, at(w.condition), at(w.index)});
-  for (const DefinednessCheck& c : general.checks) effect.checks.push_back({c.kind, c.span, at(c.reached), at(c.holds)});
-  for (const ReadRecord& r : general.reads) effect.reads.push_back({r.variable, at(r.index), at(r.value), at(r.reached)});
+  for (const SharedWrite& w : general.writes)
+    effect.writes.push_back({w.variable, at(w.condition), at(w.index)});
+  for (const DefinednessCheck& c : general.checks)
+    effect.checks.push_back({c.kind, c.span, at(c.reached), at(c.holds)});
+  for (const ReadRecord& r : general.reads)
+    effect.reads.push_back({r.variable, at(r.index), at(r.value), at(r.reached)});
   return effect;
 }
 
 void Round::Participate(TermId robot) {
-  if (std::find(participants_.begin(), participants_.end(), robot) == participants_.end()) participants_.push_back(robot);
+  if (std::find(participants_.begin(), participants_.end(), robot) == participants_.end())
+    participants_.push_back(robot);
 }
 
 // Which robots' cells, which shared variables does the goal read at the end?
@@ -70,15 +74,18 @@ void Round::FindReads(TermId goal) {
       return w.variable == variable && w.cell == cell;
     });
     if (known) return;
-    const TermId robot = arena_.FreshConstant("last writer of " + model_.variables[variable].name, arena_.Int());
+    const TermId robot =
+        arena_.FreshConstant("last writer of " + model_.variables[variable].name, arena_.Int());
     writers_.push_back({variable, cell, robot});
     Participate(robot);
   };
   expr::VisitPostorder(arena_, goal, seen, [&](TermId t) {
     for (size_t v = 0; v < model_.variables.size(); ++v) {
       const Variable& variable = model_.variables[v];
-      const bool array = variable.kind == VariableKind::kAllwrite && model_.types.Is(variable.type, lang::TypeKind::kArray);
-      const bool selects = arena_.op(t) == expr::Op::kSelect && arena_.arg(t, 0) == end_.value[v] && !arena_.IsOpen(t);
+      const bool array =
+          variable.kind == VariableKind::kAllwrite && model_.types.Is(variable.type, lang::TypeKind::kArray);
+      const bool selects =
+          arena_.op(t) == expr::Op::kSelect && arena_.arg(t, 0) == end_.value[v] && !arena_.IsOpen(t);
       if (selects && variable.PerRobot()) Participate(arena_.arg(t, 1));
       if (selects && array) last_writer(v, arena_.arg(t, 1));
       if (variable.kind == VariableKind::kAllwrite && !array && t == end_.value[v]) last_writer(v, {});
@@ -96,21 +103,26 @@ TermId Round::ByAction(TermId robot, const std::function<TermId(const Effect&)>&
 }
 
 TermId Round::Wrote(TermId robot, const LastWriter& last) {
-  return ByAction(robot, [&](const Effect& effect) {
-    std::vector<TermId> any;
-    for (const SharedWrite& w : effect.writes) {
-      if (w.variable != last.variable) continue;
-      const TermId here = w.index.valid() && last.cell.valid() ? arena_.Eq(w.index, last.cell) : arena_.True();
-      any.push_back(arena_.And(w.condition, here));
-    }
-    return arena_.Or(std::move(any));
-  }, arena_.False());
+  return ByAction(
+      robot,
+      [&](const Effect& effect) {
+        std::vector<TermId> any;
+        for (const SharedWrite& w : effect.writes) {
+          if (w.variable != last.variable) continue;
+          const TermId here =
+              w.index.valid() && last.cell.valid() ? arena_.Eq(w.index, last.cell) : arena_.True();
+          any.push_back(arena_.And(w.condition, here));
+        }
+        return arena_.Or(std::move(any));
+      },
+      arena_.False());
 }
 
 TermId Round::Written(TermId robot, const LastWriter& last) {
   const auto part = [&](TermId whole) { return last.cell.valid() ? arena_.Select(whole, last.cell) : whole; };
-  return ByAction(robot, [&](const Effect& effect) { return part(effect.value[last.variable]); },
-                  part(start_.value[last.variable]));
+  return ByAction(
+      robot, [&](const Effect& effect) { return part(effect.value[last.variable]); },
+      part(start_.value[last.variable]));
 }
 
 // What one robot does, and what that makes of its own part of the state.
@@ -129,24 +141,29 @@ TermId Round::StateOf(TermId r) {
     if (variable.kind == VariableKind::kSensor) {
       facts.push_back(arena_.Or(moved_, arena_.Eq(after, before)));
     } else {
-      facts.push_back(arena_.Eq(after, ByAction(r, [&](const Effect& e) { return e.value[v]; }, before)));
+      facts.push_back(arena_.Eq(after, ByAction(
+                                           r, [&](const Effect& e) { return e.value[v]; }, before)));
     }
   }
   const TermId stopped = arena_.Select(start_.stopped, r);
-  if (vocabulary_.robots_stop()) facts.push_back(arena_.Eq(arena_.Select(end_.stopped, r),
-                            arena_.Or(stopped, ByAction(r, [](const Effect& e) { return e.stops; }, arena_.False()))));
+  if (vocabulary_.robots_stop())
+    facts.push_back(
+        arena_.Eq(arena_.Select(end_.stopped, r),
+                  arena_.Or(stopped, ByAction(
+                                         r, [](const Effect& e) { return e.stops; }, arena_.False()))));
   return arena_.And(std::move(facts));
 }
 
-// An urgent event that is enabled must be run, instead of any other, before the environment moves. A robot that has
-// not run yet skips so far, and an event that needs a lock may fail to get it.
+// An urgent event that is enabled must be run, instead of any other, before the environment moves. A robot
+// that has not run yet skips so far, and an event that needs a lock may fail to get it.
 TermId Round::Urgency(TermId r) {
   std::vector<TermId> facts;
   for (size_t u = 1; u < actions_.size(); ++u) {
     if (!model_.events[u - 1]->urgent) continue;
     const Effect& urgent = EffectOf(u, r);
     const TermId waits = arena_.Not(urgent.enabled);
-    if (urgent.locks == arena_.False()) facts.push_back(arena_.Or({arena_.Not(moved_), arena_.Not(Acts(r, 0)), waits}));
+    if (urgent.locks == arena_.False())
+      facts.push_back(arena_.Or({arena_.Not(moved_), arena_.Not(Acts(r, 0)), waits}));
     for (size_t a = 1; a < actions_.size(); ++a) {
       if (!model_.events[a - 1]->urgent) facts.push_back(arena_.Or(arena_.Not(Acts(r, a)), waits));
     }
@@ -177,8 +194,9 @@ TermId Round::Locks() {
 TermId Round::WriterOf(const LastWriter& last) {
   const TermId wrote = Wrote(last.robot, last);
   const auto part = [&](TermId whole) { return last.cell.valid() ? arena_.Select(whole, last.cell) : whole; };
-  std::vector<TermId> facts{arena_.Eq(part(end_.value[last.variable]),
-                                      arena_.Ite(wrote, Written(last.robot, last), part(start_.value[last.variable])))};
+  std::vector<TermId> facts{
+      arena_.Eq(part(end_.value[last.variable]),
+                arena_.Ite(wrote, Written(last.robot, last), part(start_.value[last.variable])))};
   const auto turn = [&](TermId robot) { return arena_.Apply(turn_, {robot}); };
   for (const TermId r : participants_) {
     if (r == last.robot) continue;

@@ -9,16 +9,17 @@
 
 namespace rondo::koord {
 
-/// One round, or the execution of `init` by every robot, as a relation between the state at its start and a state at
-/// any later moment of it (docs/theory.md, "The round"):
+/// One round, or the execution of `init` by every robot, as a relation between the state at its start and a
+/// state at any later moment of it (docs/theory.md, "The round"):
 /// - each robot runs at most one event, or skips; all read the values at the start (EventTrans, SkipEvent);
-/// - what every robot may write takes the value of the last writer in an order that is the same for all variables;
+/// - what every robot may write takes the value of the last writer in an order that is the same for all
+/// variables;
 /// - one robot at most takes the lock of an event (atomic);
 /// - then the environment may have moved the sensors, within the controller assumptions (EnvTrans).
 /// A robot that has not run yet is one that skips, so the relation covers every prefix of the interleaving.
 ///
-/// The relation is stated for chosen robots, the participants: the others do not matter to a formula that does not
-/// read their state, except as last writers, and those are participants of their own.
+/// The relation is stated for chosen robots, the participants: the others do not matter to a formula that
+/// does not read their state, except as last writers, and those are participants of their own.
 class Round {
  public:
   enum class Kind : uint8_t { kEvents, kInit };
@@ -36,8 +37,9 @@ class Round {
   TermId Acts(TermId robot, size_t action);
   const Effect& EffectOf(size_t action, TermId robot);
 
-  /// Makes participants of all robots whose state at the end `goal` reads, and of a last writer for each variable
-  /// that all may write and `goal` reads; returns the relation. `everyone`: participants in any case.
+  /// Makes participants of all robots whose state at the end `goal` reads, and of a last writer for each
+  /// variable that all may write and `goal` reads; returns the relation. `everyone`: participants in any
+  /// case.
   std::vector<solve::Assertion> Relate(TermId goal, const std::vector<TermId>& everyone);
   const std::vector<TermId>& participants() const { return participants_; }
 

@@ -23,9 +23,11 @@ std::vector<Task> ListTasks(Problems& problems) {
     add(TaskKind::kRound, i, 0, name + ".round");
   }
   for (size_t a = problems.has_init() ? 0 : 1; a < actions.size(); ++a) {
-    if (!problems.ChecksOf(a).empty()) add(TaskKind::kDefined, 0, a, "defined." + (a == 0 ? "init" : actions[a]));
+    if (!problems.ChecksOf(a).empty())
+      add(TaskKind::kDefined, 0, a, "defined." + (a == 0 ? "init" : actions[a]));
   }
-  for (const size_t f : problems.theory().SummarisedFunctions()) add(TaskKind::kImpossible, f, 0, "sanity.summary");
+  for (const size_t f : problems.theory().SummarisedFunctions())
+    add(TaskKind::kImpossible, f, 0, "sanity.summary");
   add(TaskKind::kSomeInitial, 0, 0, "sanity.initially");
   for (size_t a = 1; a < actions.size(); ++a) {
     add(TaskKind::kSomeValues, 0, a, "sanity.values." + actions[a]);
@@ -46,7 +48,8 @@ std::vector<Task> SplitRounds(std::vector<Task> tasks, Problems& problems) {
       continue;
     }
     for (const size_t a : Columns(problems)) {
-      const std::string name = problems.theory().InvariantName(task.subject) + "." + problems.round().actions()[a];
+      const std::string name =
+          problems.theory().InvariantName(task.subject) + "." + problems.round().actions()[a];
       result.push_back({TaskKind::kStep, task.subject, a, name, solve::Unknown{"not asked"}, 0, {}});
     }
   }
@@ -55,23 +58,41 @@ std::vector<Task> SplitRounds(std::vector<Task> tasks, Problems& problems) {
 
 Problem StateTask(const Task& task, Problems& problems, Effort effort) {
   switch (effort) {
-    case Effort::kFew: problems.limits = {.rounds = 3}; break;
-    case Effort::kMore: problems.limits = {.rounds = 5}; break;
-    case Effort::kMost: problems.limits = {.mode = solve::InstantiationMode::kPlaces, .rounds = 4}; break;
+    case Effort::kFew:
+      problems.limits = {.rounds = 3};
+      break;
+    case Effort::kMore:
+      problems.limits = {.rounds = 5};
+      break;
+    case Effort::kMost:
+      problems.limits = {.mode = solve::InstantiationMode::kPlaces, .rounds = 4};
+      break;
   }
   switch (task.kind) {
-    case TaskKind::kInitially: return problems.Initially(task.subject);
-    case TaskKind::kRound: return problems.Step(task.subject, std::nullopt, false);
-    case TaskKind::kStep: return problems.Step(task.subject, task.action, false);
-    case TaskKind::kFollows: return problems.Follows(task.subject, task.premises);
-    case TaskKind::kDefined: return problems.Defined(task.action);
-    case TaskKind::kImpossible: return problems.ImpossibleSummary(task.subject);
-    case TaskKind::kSomeInitial: return problems.SomeInitialState();
-    case TaskKind::kSomeValues: return problems.SomeValues(task.action);
-    case TaskKind::kSomeEnabled: return problems.SomeEnabled(task.action);
-    case TaskKind::kSomeCondition: return problems.SomePromise(task.subject, false);
-    case TaskKind::kSomePromise: return problems.SomePromise(task.subject, true);
-    case TaskKind::kNow: return problems.PromiseNow(task.subject);
+    case TaskKind::kInitially:
+      return problems.Initially(task.subject);
+    case TaskKind::kRound:
+      return problems.Step(task.subject, std::nullopt, false);
+    case TaskKind::kStep:
+      return problems.Step(task.subject, task.action, false);
+    case TaskKind::kFollows:
+      return problems.Follows(task.subject, task.premises);
+    case TaskKind::kDefined:
+      return problems.Defined(task.action);
+    case TaskKind::kImpossible:
+      return problems.ImpossibleSummary(task.subject);
+    case TaskKind::kSomeInitial:
+      return problems.SomeInitialState();
+    case TaskKind::kSomeValues:
+      return problems.SomeValues(task.action);
+    case TaskKind::kSomeEnabled:
+      return problems.SomeEnabled(task.action);
+    case TaskKind::kSomeCondition:
+      return problems.SomePromise(task.subject, false);
+    case TaskKind::kSomePromise:
+      return problems.SomePromise(task.subject, true);
+    case TaskKind::kNow:
+      return problems.PromiseNow(task.subject);
   }
   CHECK(false);
   return {};

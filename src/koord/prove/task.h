@@ -10,8 +10,8 @@ namespace rondo::koord {
 /// The questions that a proof asks (see `Problems` for what each means).
 enum class TaskKind : uint8_t {
   kInitially,
-  kRound,  // one invariant, any round
-  kStep,   // one invariant, the rounds in which one action is the first
+  kRound,    // one invariant, any round
+  kStep,     // one invariant, the rounds in which one action is the first
   kFollows,  // one invariant, from others at the same moment
   kDefined,
   kImpossible,  // a summary that no function can satisfy

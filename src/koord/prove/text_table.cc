@@ -8,7 +8,8 @@ std::string TextTable::Text() const {
   std::vector<size_t> widths;
   for (const auto& row : rows_) {
     widths.resize(std::max(widths.size(), row.size()));
-    for (size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], std::min<size_t>(row[c].size(), 40));
+    for (size_t c = 0; c < row.size(); ++c)
+      widths[c] = std::max(widths[c], std::min<size_t>(row[c].size(), 40));
   }
   std::string text;
   for (const auto& row : rows_) {

@@ -1,8 +1,8 @@
 #include "koord/prove/theory.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "expr/substitute.h"
 #include "lang/expr_printer.h"
@@ -38,16 +38,21 @@ TermId Theory::PerRobot(ExprId e, const View& view) {
 bool Theory::UsesOld(ExprId id) const {
   const lang::Expr& e = model_.program->exprs[id];
   const Ref ref = model_.RefOf(id);
-  if (e.kind == lang::ExprKind::kCall && ref.kind == RefKind::kBuiltin && static_cast<Builtin>(ref.index) == Builtin::kOld) return true;
+  if (e.kind == lang::ExprKind::kCall && ref.kind == RefKind::kBuiltin &&
+      static_cast<Builtin>(ref.index) == Builtin::kOld)
+    return true;
   return std::any_of(e.args.begin(), e.args.end(), [&](ExprId arg) { return UsesOld(arg); });
 }
 
 std::string Theory::NameOf(const AssumeDef& def) const {
   const lang::ExprPool& exprs = model_.program->exprs;
   switch (def.kind) {
-    case AssumeKind::kInitially: return "initially " + lang::PrintExpr(exprs, def.body);
-    case AssumeKind::kFact: return def.name.empty() ? lang::PrintExpr(exprs, def.body) : def.name;
-    case AssumeKind::kPort: break;
+    case AssumeKind::kInitially:
+      return "initially " + lang::PrintExpr(exprs, def.body);
+    case AssumeKind::kFact:
+      return def.name.empty() ? lang::PrintExpr(exprs, def.body) : def.name;
+    case AssumeKind::kPort:
+      break;
   }
   if (!def.name.empty()) return fmt::format("{}.{}", def.module, def.name);
   // Unnamed ones are told apart by their order.
@@ -70,7 +75,8 @@ TermId Theory::Invariant(size_t i, const View& view) { return PerRobot(model_.in
 
 std::vector<Assertion> Theory::Invariants(const View& view) {
   std::vector<Assertion> result;
-  for (size_t i = 0; i < invariants(); ++i) result.push_back({Invariant(i, view), "invariant " + InvariantName(i)});
+  for (size_t i = 0; i < invariants(); ++i)
+    result.push_back({Invariant(i, view), "invariant " + InvariantName(i)});
   return result;
 }
 
@@ -86,7 +92,9 @@ size_t Theory::FunctionOf(const SummaryDef& def) const {
 bool Theory::CallsFunctions(ExprId id) const {
   const lang::Expr& e = model_.program->exprs[id];
   const Ref ref = model_.RefOf(id);
-  if (ref.kind == RefKind::kOpaqueField || (ref.kind == RefKind::kFunction && e.kind == lang::ExprKind::kCall)) return true;
+  if (ref.kind == RefKind::kOpaqueField ||
+      (ref.kind == RefKind::kFunction && e.kind == lang::ExprKind::kCall))
+    return true;
   if (ref.kind == RefKind::kBuiltin && static_cast<Builtin>(ref.index) == Builtin::kDist) return true;
   return std::any_of(e.args.begin(), e.args.end(), [&](ExprId arg) { return CallsFunctions(arg); });
 }
@@ -95,12 +103,13 @@ std::vector<size_t> Theory::SummarisedFunctions() {
   std::vector<size_t> result;
   for (const SummaryDef* def : model_.summaries) {
     const size_t f = FunctionOf(*def);
-    const bool simple = std::all_of(model_.summaries.begin(), model_.summaries.end(), [&](const SummaryDef* other) {
-      return FunctionOf(*other) != f || !CallsFunctions(other->body);
-    });
+    const bool simple = std::all_of(
+        model_.summaries.begin(), model_.summaries.end(),
+        [&](const SummaryDef* other) { return FunctionOf(*other) != f || !CallsFunctions(other->body); });
     const expr::SortKind kind = arena_.sort(vocabulary_.SortOf(model_.functions[f].result)).kind;
-    const bool plain = kind == expr::SortKind::kBool || kind == expr::SortKind::kInt || kind == expr::SortKind::kReal ||
-                       kind == expr::SortKind::kEnum || kind == expr::SortKind::kRecord;
+    const bool plain = kind == expr::SortKind::kBool || kind == expr::SortKind::kInt ||
+                       kind == expr::SortKind::kReal || kind == expr::SortKind::kEnum ||
+                       kind == expr::SortKind::kRecord;
     if (simple && plain && std::find(result.begin(), result.end(), f) == result.end()) result.push_back(f);
   }
   return result;
@@ -109,7 +118,8 @@ std::vector<size_t> Theory::SummarisedFunctions() {
 TermId Theory::NoResult(size_t index) {
   const Function& f = model_.functions[index];
   std::vector<TermId> arguments;
-  for (const TypeId p : f.parameters) arguments.push_back(arena_.FreshConstant("argument", vocabulary_.SortOf(p)));
+  for (const TypeId p : f.parameters)
+    arguments.push_back(arena_.FreshConstant("argument", vocabulary_.SortOf(p)));
   const TermId result = arena_.FreshBound("result", vocabulary_.SortOf(f.result));
   const View parameters = vocabulary_.MakeView("");
   std::vector<TermId> wanted;
@@ -134,7 +144,9 @@ std::vector<Assertion> Theory::Facts() {
   for (size_t v = 0; v < model_.variables.size(); ++v) {
     const Variable& variable = model_.variables[v];
     if (variable.kind != VariableKind::kParam || !variable.initial.valid()) continue;
-    result.push_back({arena_.Eq(parameters.value[v], executor_.Value(variable.initial, variable.type, parameters, {})), ""});
+    result.push_back(
+        {arena_.Eq(parameters.value[v], executor_.Value(variable.initial, variable.type, parameters, {})),
+         ""});
   }
   return result;
 }
@@ -179,10 +191,13 @@ std::vector<Assertion> Theory::DeclaredValues(const View& view) {
   for (size_t v = 0; v < model_.variables.size(); ++v) {
     const Variable& variable = model_.variables[v];
     if (variable.kind == VariableKind::kParam || !variable.initial.valid()) continue;
-    const auto value = [&](TermId robot) { return executor_.Value(variable.initial, variable.type, parameters, robot); };
-    const TermId fact = variable.PerRobot()
-                            ? ForEachRobot([&](TermId r) { return arena_.Eq(arena_.Select(view.value[v], r), value(r)); })
-                            : arena_.Eq(view.value[v], value({}));
+    const auto value = [&](TermId robot) {
+      return executor_.Value(variable.initial, variable.type, parameters, robot);
+    };
+    const TermId fact =
+        variable.PerRobot()
+            ? ForEachRobot([&](TermId r) { return arena_.Eq(arena_.Select(view.value[v], r), value(r)); })
+            : arena_.Eq(view.value[v], value({}));
     result.push_back({fact, ""});
   }
   result.push_back({ForEachRobot([&](TermId r) { return arena_.Not(arena_.Select(view.stopped, r)); }), ""});
@@ -211,7 +226,8 @@ std::vector<Theory::Promise> Theory::Promises(const View& settled, const View& e
   std::vector<Promise> result;
   for (const AssumeDef* def : model_.assumptions) {
     if (def->kind != AssumeKind::kPort || (!def->when.valid() && !UsesOld(def->body))) continue;
-    const TermId condition = def->when.valid() ? executor_.Specification(def->when, settled, robot, nullptr, {}) : arena_.True();
+    const TermId condition =
+        def->when.valid() ? executor_.Specification(def->when, settled, robot, nullptr, {}) : arena_.True();
     const TermId promise = executor_.Specification(def->body, end, robot, &settled, {});
     result.push_back({def, NameOf(*def), condition, promise});
   }

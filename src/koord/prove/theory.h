@@ -30,7 +30,8 @@ class Theory {
   std::vector<solve::Assertion> Initially(const View& view);
   /// Controller assumptions without `when`: true of the ports of every robot at every moment.
   std::vector<solve::Assertion> PortFacts(const View& view);
-  /// Controller assumptions about the environment transition of one robot: P at `round.settled()` implies Q at the end.
+  /// Controller assumptions about the environment transition of one robot: P at `round.settled()` implies Q
+  /// at the end.
   std::vector<solve::Assertion> PortPromises(Round& round, TermId robot);
 
   struct Promise {

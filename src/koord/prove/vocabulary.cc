@@ -9,8 +9,9 @@ using lang::TypeKind;
 namespace {
 
 bool Stops(const std::vector<Stmt>& body) {
-  return std::any_of(body.begin(), body.end(),
-                     [](const Stmt& s) { return s.kind == StmtKind::kStop || Stops(s.body) || Stops(s.orelse); });
+  return std::any_of(body.begin(), body.end(), [](const Stmt& s) {
+    return s.kind == StmtKind::kStop || Stops(s.body) || Stops(s.orelse);
+  });
 }
 
 }  // namespace
@@ -30,15 +31,33 @@ SortId Vocabulary::SortOf(TypeId type) {
   switch (t.kind) {
     case TypeKind::kError:
     case TypeKind::kVariable:  // never constrained: any one sort will do
-    case TypeKind::kBool: sort = arena_.Bool(); break;
-    case TypeKind::kInt: sort = arena_.Int(); break;
-    case TypeKind::kFloat: sort = arena_.Real(); break;
-    case TypeKind::kString: sort = arena_.Opaque("string"); break;
-    case TypeKind::kStream: sort = arena_.Opaque("stream"); break;
-    case TypeKind::kOpaque: sort = arena_.Opaque(t.name); break;
-    case TypeKind::kEnum: sort = arena_.Enum(t.name, t.fields); break;
-    case TypeKind::kArray: sort = arena_.Array(arena_.Int(), SortOf(t.parts[0])); break;
-    case TypeKind::kList: sort = arena_.List(SortOf(t.parts[0])); break;
+    case TypeKind::kBool:
+      sort = arena_.Bool();
+      break;
+    case TypeKind::kInt:
+      sort = arena_.Int();
+      break;
+    case TypeKind::kFloat:
+      sort = arena_.Real();
+      break;
+    case TypeKind::kString:
+      sort = arena_.Opaque("string");
+      break;
+    case TypeKind::kStream:
+      sort = arena_.Opaque("stream");
+      break;
+    case TypeKind::kOpaque:
+      sort = arena_.Opaque(t.name);
+      break;
+    case TypeKind::kEnum:
+      sort = arena_.Enum(t.name, t.fields);
+      break;
+    case TypeKind::kArray:
+      sort = arena_.Array(arena_.Int(), SortOf(t.parts[0]));
+      break;
+    case TypeKind::kList:
+      sort = arena_.List(SortOf(t.parts[0]));
+      break;
     case TypeKind::kRecord:
     case TypeKind::kTuple: {
       std::vector<SortId> parts;
@@ -64,7 +83,8 @@ View Vocabulary::MakeView(const std::string& suffix) {
     const std::string name = variable.kind == VariableKind::kParam ? variable.name : variable.name + suffix;
     view.value.push_back(arena_.Variable(arena_.Declare(name, {}, sort)));
   }
-  view.stopped = arena_.Variable(arena_.Declare("stopped" + suffix, {}, arena_.Array(arena_.Int(), arena_.Bool())));
+  view.stopped =
+      arena_.Variable(arena_.Declare("stopped" + suffix, {}, arena_.Array(arena_.Int(), arena_.Bool())));
   return view;
 }
 
@@ -88,7 +108,8 @@ TermId Vocabulary::IsRobot(TermId i) {
 }
 
 TermId Vocabulary::StringLiteral(const std::string& text) {
-  const TermId literal = arena_.Variable(arena_.Declare("literal " + text, {}, SortOf(model_.types.string())));
+  const TermId literal =
+      arena_.Variable(arena_.Declare("literal " + text, {}, SortOf(model_.types.string())));
   if (std::find(literals_.begin(), literals_.end(), literal) == literals_.end()) literals_.push_back(literal);
   return literal;
 }
@@ -104,9 +125,9 @@ std::vector<TermId> Vocabulary::Axioms() {
     const TermId q = arena_.FreshBound("q", pos);
     const TermId d = arena_.Apply(Dist(), {p, q});
     const TermId zero = arena_.Number(arena_.Real(), expr::Rational(0));
-    axioms.push_back(arena_.Forall(
-        {p, q}, arena_.And({arena_.Le(zero, d), arena_.Eq(d, arena_.Apply(Dist(), {q, p})),
-                            arena_.Eq(arena_.Eq(d, zero), arena_.Eq(p, q))})));
+    axioms.push_back(
+        arena_.Forall({p, q}, arena_.And({arena_.Le(zero, d), arena_.Eq(d, arena_.Apply(Dist(), {q, p})),
+                                          arena_.Eq(arena_.Eq(d, zero), arena_.Eq(p, q))})));
   }
   return axioms;
 }

@@ -13,10 +13,11 @@ namespace rondo::koord {
 using expr::SortId;
 using expr::TermId;
 
-/// The state at one moment: for each variable one term; an array over robots for what exists once for each robot.
+/// The state at one moment: for each variable one term; an array over robots for what exists once for each
+/// robot.
 struct View {
   std::vector<TermId> value;
-  TermId stopped;             ///< array over robots: has executed `stop`
+  TermId stopped;              ///< array over robots: has executed `stop`
   std::string planner_suffix;  ///< which version of the callable ports
 };
 
@@ -44,7 +45,8 @@ class Vocabulary {
   TermId IsRobot(TermId i);
   /// A constant of the sort of strings for a literal.
   TermId StringLiteral(const std::string& text);
-  /// What is true of the vocabulary itself: N_sys >= 1, different literals are different, `dist` is a distance.
+  /// What is true of the vocabulary itself: N_sys >= 1, different literals are different, `dist` is a
+  /// distance.
   std::vector<TermId> Axioms();
 
   expr::Arena& arena() { return arena_; }

@@ -1,10 +1,10 @@
 #include "koord/prove/witness.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 #include <map>
-
-#include <fmt/format.h>
 
 #include "expr/substitute.h"
 #include "koord/prove/text_table.h"
@@ -17,7 +17,8 @@ using solve::Value;
 // Which variables does an expression mention?
 void Mentioned(const Model& model, ExprId id, std::vector<bool>& seen) {
   const Ref ref = model.RefOf(id);
-  if (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell || ref.kind == RefKind::kPortOf) seen[ref.index] = true;
+  if (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell || ref.kind == RefKind::kPortOf)
+    seen[ref.index] = true;
   const lang::Expr& e = model.program->exprs[id];
   for (const ExprId arg : e.args) Mentioned(model, arg, seen);
   for (const lang::Binder& b : e.binders) {
@@ -28,8 +29,13 @@ void Mentioned(const Model& model, ExprId id, std::vector<bool>& seen) {
 /// Reads a model of a spelled-out problem and tells it as a story.
 class Storyteller {
  public:
-  Storyteller(const Model& model, Problems& problems, expr::Arena& arena, size_t invariant, std::vector<TermId> robots)
-      : model_(model), problems_(problems), arena_(arena), invariant_(invariant), robots_(std::move(robots)) {}
+  Storyteller(const Model& model, Problems& problems, expr::Arena& arena, size_t invariant,
+              std::vector<TermId> robots)
+      : model_(model),
+        problems_(problems),
+        arena_(arena),
+        invariant_(invariant),
+        robots_(std::move(robots)) {}
 
   std::vector<TermId> Wanted(bool initial) {
     ForEachValue(initial, [&](size_t, bool, TermId, TermId term) { wanted_.push_back(term); });
@@ -64,7 +70,8 @@ class Storyteller {
         told.push_back(number);
         for (size_t a = 0; a < round.actions().size(); ++a) {
           if (!IsTrue(sat, round.Acts(robot, a))) continue;
-          table.Add({fmt::format("robot {}", number), round.actions()[a], Reads(sat, robot, a), Writes(sat, robot)});
+          table.Add({fmt::format("robot {}", number), round.actions()[a], Reads(sat, robot, a),
+                     Writes(sat, robot)});
         }
       }
     }
@@ -104,7 +111,9 @@ class Storyteller {
     std::vector<std::string> parts;
     for (const ReadRecord& read : problems_.round().EffectOf(action, robot).reads) {
       if (!IsTrue(sat, read.reached) || arena_.IsOpen(read.value)) continue;
-      if (!read.index.valid() && model_.types.Is(model_.variables[read.variable].type, lang::TypeKind::kArray)) continue;
+      if (!read.index.valid() &&
+          model_.types.Is(model_.variables[read.variable].type, lang::TypeKind::kArray))
+        continue;
       std::string name = model_.variables[read.variable].name;
       if (read.index.valid()) name += fmt::format("[{}]", Show(sat, read.index));
       std::string part = fmt::format("{} = {}", name, Show(sat, read.value));
@@ -128,7 +137,8 @@ class Storyteller {
         const std::string before = Show(sat, arena_.Select(round.start().value[v], robot));
         const std::string after = Show(sat, arena_.Select(round.end().value[v], robot));
         if (before == after) continue;
-        const std::string index = variable.kind == VariableKind::kAllread ? fmt::format("[{}]", Show(sat, robot)) : "";
+        const std::string index =
+            variable.kind == VariableKind::kAllread ? fmt::format("[{}]", Show(sat, robot)) : "";
         parts.push_back(fmt::format("{}{} = {}", variable.name, index, after));
       }
     }
@@ -143,10 +153,13 @@ class Storyteller {
     std::vector<std::tuple<std::string, size_t, std::string, std::string>> lines;
     ForEachValue(initial, [&](size_t v, bool end, TermId robot, TermId term) {
       const std::string name = NameOf(v, robot.valid() ? Show(sat, robot) : "");
-      if (end && std::any_of(lines.begin(), lines.end(), [&](const auto& line) { return std::get<0>(line) == name; })) return;
+      if (end && std::any_of(lines.begin(), lines.end(),
+                             [&](const auto& line) { return std::get<0>(line) == name; }))
+        return;
       if (!end) {
         before[name] = Show(sat, term);
-        if (initial || model_.variables[v].kind == VariableKind::kParam) lines.emplace_back(name, v, before[name], before[name]);
+        if (initial || model_.variables[v].kind == VariableKind::kParam)
+          lines.emplace_back(name, v, before[name], before[name]);
       } else {
         lines.emplace_back(name, v, before[name], Show(sat, term));
       }
@@ -155,7 +168,10 @@ class Storyteller {
       if (!mentioned[v]) continue;
       const bool same = old == now;
       const bool moved = model_.variables[v].kind == VariableKind::kSensor && !same;
-      table.Add({same ? "state" : moved ? "moved" : "changed", name, same ? "= " + now : fmt::format("{} -> {}", old, now), ""});
+      table.Add({same    ? "state"
+                 : moved ? "moved"
+                         : "changed",
+                 name, same ? "= " + now : fmt::format("{} -> {}", old, now), ""});
     }
   }
 
@@ -198,12 +214,21 @@ struct Candidate {
 };
 
 // Satisfiable with everything taken into account, or as far as the instances go, or nothing.
-std::optional<Candidate> Confirm(const Problem& problem, std::vector<TermId> wanted, bool complete,
-                                 const solve::Solver& solver, solve::Budget budget, const base::StopToken& stop) {
+std::optional<Candidate> Confirm(const Problem& problem, std::vector<TermId> wanted,
+                                 const std::vector<solve::Assertion>& small, bool complete,
+                                 const solve::Solver& solver, solve::Budget budget,
+                                 const base::StopToken& stop) {
   budget.core = false;
   solve::Query query = problem.query;
   query.wanted = std::move(wanted);
+  // Small numbers, if there are any, are easier to read.
+  const size_t without = query.assertions.size();
+  query.assertions.insert(query.assertions.end(), small.begin(), small.end());
   solve::Answer answer = solver.Check(query, budget, stop);
+  if (!std::holds_alternative<solve::Sat>(answer)) {
+    query.assertions.resize(without);
+    answer = solver.Check(query, budget, stop);
+  }
   if (!std::holds_alternative<solve::Sat>(answer)) return std::nullopt;
   if (complete) return Candidate{std::get<solve::Sat>(std::move(answer)), true};
   // Some quantifiers were only instantiated: ask again with all of them.
@@ -214,9 +239,28 @@ std::optional<Candidate> Confirm(const Problem& problem, std::vector<TermId> wan
   return Candidate{std::get<solve::Sat>(std::move(confirmed ? whole : answer)), confirmed};
 }
 
-// Is every quantified assertion of the form "for each robot r, p", where r occurs in p only to pick robot r's values? Then
-// robots that the problem does not mention can be copies of one that it does: they satisfy p because that one does, and
-// skip. (Not if they owe something to a controller assumption: nothing says that they can keep it by standing still.)
+// Every number among the terms, and every member of a record, lies between -10 and 10.
+std::vector<solve::Assertion> Small(expr::Arena& arena, const std::vector<TermId>& terms) {
+  std::vector<solve::Assertion> result;
+  const std::function<void(TermId)> bound = [&](TermId t) {
+    const expr::SortId sort = arena.sort_of(t);
+    if (sort == arena.Int() || sort == arena.Real()) {
+      const TermId low = arena.Number(sort, expr::Rational(-10));
+      const TermId high = arena.Number(sort, expr::Rational(10));
+      result.push_back({arena.And(arena.Le(low, t), arena.Le(t, high)), ""});
+    } else if (arena.sort(sort).kind == expr::SortKind::kRecord) {
+      const size_t fields = arena.sort(sort).parts.size();
+      for (uint32_t f = 0; f < fields; ++f) bound(arena.Field(t, f));
+    }
+  };
+  for (const TermId t : terms) bound(t);
+  return result;
+}
+
+// Is every quantified assertion of the form "for each robot r, p", where r occurs in p only to pick robot r's
+// values? Then robots that the problem does not mention can be copies of one that it does: they satisfy p
+// because that one does, and skip. (Not if they owe something to a controller assumption: nothing says that
+// they can keep it by standing still.)
 bool OthersCanBeCopies(const expr::Arena& arena, const Problem& problem, Problems& problems) {
   if (problem.participants.empty() || !problems.promises().empty()) return false;
   return std::all_of(problem.assertions.begin(), problem.assertions.end(), [&](const solve::Assertion& a) {
@@ -232,15 +276,17 @@ bool OthersCanBeCopies(const expr::Arena& arena, const Problem& problem, Problem
     bool local = arena.op(range) == expr::Op::kAnd;
     expr::VisitPostorder(arena, body, seen, [&](TermId t) {
       const auto args = arena.args(t);
-      for (size_t i = 0; i < args.size(); ++i) local = local && (args[i] != robot || (arena.op(t) == expr::Op::kSelect && i == 1));
+      for (size_t i = 0; i < args.size(); ++i)
+        local = local && (args[i] != robot || (arena.op(t) == expr::Op::kSelect && i == 1));
     });
     return local;
   });
 }
 
 // A team of `n`, every quantifier over robots spelled out; or, for a large team, only those who matter.
-std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::optional<size_t> action, int64_t n, bool expand,
-                               const solve::Solver& solver, const solve::Budget& budget, const base::StopToken& stop) {
+std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::optional<size_t> action, int64_t n,
+                               bool expand, const solve::Solver& solver, const solve::Budget& budget,
+                               const base::StopToken& stop) {
   expr::Arena arena;
   diag::Diagnostics ignored;  // the symbolic run reported the same
   Problems problems(arena, model, {n, expand}, ignored);
@@ -249,9 +295,12 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::option
   const auto attempt = [&](const Problem& problem, bool reachable) -> std::optional<Witness> {
     Storyteller storyteller(model, problems, arena, invariant, problem.participants);
     const bool complete = problem.complete || (!expand && OthersCanBeCopies(arena, problem, problems));
-    const auto found = Confirm(problem, storyteller.Wanted(initial), complete, solver, budget, stop);
+    const std::vector<TermId> wanted = storyteller.Wanted(initial);
+    const auto found = Confirm(problem, wanted, Small(arena, wanted), complete, solver, budget, stop);
     if (!found) return std::nullopt;
-    return Witness{action, found->confirmed && !problems.uses_dist(), reachable, !initial && storyteller.Moved(found->sat), n, storyteller.Tell(found->sat, initial)};
+    return Witness{action,    found->confirmed && !problems.uses_dist(),
+                   reachable, !initial && storyteller.Moved(found->sat),
+                   n,         storyteller.Tell(found->sat, initial)};
   };
   if (initial) return attempt(problems.Initially(invariant), true);
   auto witness = attempt(problems.Step(invariant, *action, false), false);
@@ -268,14 +317,17 @@ std::optional<Witness> FindWitness(const Model& model, size_t invariant, std::op
                                    std::optional<int64_t> robots, const solve::Solver& solver,
                                    const solve::Budget& budget, const base::StopToken& stop) {
   static constexpr int64_t kLargest = 8;
-  if (robots && *robots > kLargest) return TryTeam(model, invariant, action, *robots, false, solver, budget, stop);
+  if (robots && *robots > kLargest)
+    return TryTeam(model, invariant, action, *robots, false, solver, budget, stop);
   std::optional<Witness> best;
   int unconfirmed = 0;
-  for (int64_t n = robots.value_or(1); n <= robots.value_or(4) && unconfirmed < 2 && !stop.StopRequested(); ++n) {
+  for (int64_t n = robots.value_or(1); n <= robots.value_or(4) && unconfirmed < 2 && !stop.StopRequested();
+       ++n) {
     auto witness = TryTeam(model, invariant, action, n, true, solver, budget, stop);
     if (!witness) continue;
     if (witness->confirmed) return witness;
-    // What could not be confirmed for two sizes will not be for a third: the functions are too much for the solver.
+    // What could not be confirmed for two sizes will not be for a third: the functions are too much for the
+    // solver.
     ++unconfirmed;
     if (!best) best = std::move(witness);
   }

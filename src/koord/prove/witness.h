@@ -10,16 +10,18 @@ namespace rondo::koord {
 /// A round that breaks an invariant, with a small number of robots.
 struct Witness {
   std::optional<size_t> action;  ///< the first action of the round; none for an initial state
-  bool confirmed = true;   ///< satisfies everything; otherwise some quantifiers were only tried on the terms in sight
-  bool reachable = false;  ///< it starts in an initial state
+  bool confirmed =
+      true;  ///< satisfies everything; otherwise some quantifiers were only tried on the terms in sight
+  bool reachable = false;    ///< it starts in an initial state
   bool environment = false;  ///< the environment moved in it
   int64_t robots = 0;
   std::string table;  ///< who did, read and wrote what; several lines
 };
 
-/// Looks for a witness that invariant `i` fails in a round whose first action is `action`, or, with no action, in an
-/// initial state. Tries teams of 1 to 4 robots, or the fixed size if that is at most 8. A
-/// witness is confirmed with every quantifier in place; without a confirmed one, returns a candidate if there is any.
+/// Looks for a witness that invariant `i` fails in a round whose first action is `action`, or, with no
+/// action, in an initial state. Tries teams of 1 to 4 robots, or the fixed size if that is at most 8. A
+/// witness is confirmed with every quantifier in place; without a confirmed one, returns a candidate if there
+/// is any.
 std::optional<Witness> FindWitness(const Model& model, size_t invariant, std::optional<size_t> action,
                                    std::optional<int64_t> robots, const solve::Solver& solver,
                                    const solve::Budget& budget, const base::StopToken& stop);

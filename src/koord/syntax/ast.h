@@ -7,8 +7,8 @@
 #include "lang/syntax_tree.h"
 #include "lang/token.h"
 
-/// The syntax of Koord programs and their specifications, as written (Koord paper, Fig. 4, and the superset of all
-/// dialects that docs/language.md describes).
+/// The syntax of Koord programs and their specifications, as written (Koord paper, Fig. 4, and the superset
+/// of all dialects that docs/language.md describes).
 namespace rondo::koord {
 
 using lang::ExprId;
@@ -46,7 +46,7 @@ struct Stmt {
 struct Decl {
   lang::TypeSyntax type;
   std::string name;
-  diag::Span span;  ///< of the name
+  diag::Span span;                 ///< of the name
   std::vector<ExprId> dimensions;  ///< written after the name; an invalid id for `[]` and `[*]`
   ExprId initial;
   std::vector<std::string> members;  ///< `enum {a, b} name` declares an enumeration in place
@@ -135,8 +135,8 @@ struct InvariantDef {
   ExprId body;
 };
 
-using Item = std::variant<AgentHeader, FunctionDef, AdtDef, EnumDef, ModuleDef, Section, InitDef, EventDef, ParamDef,
-                          AssumeDef, SummaryDef, InvariantDef>;
+using Item = std::variant<AgentHeader, FunctionDef, AdtDef, EnumDef, ModuleDef, Section, InitDef, EventDef,
+                          ParamDef, AssumeDef, SummaryDef, InvariantDef>;
 
 /// One file, or a program with the specification beside it: items in source order.
 struct Program {

@@ -8,8 +8,10 @@ using lang::TokenKind;
 // On the same line, or one to a line in a block.
 void Parser::ParseDeclGroup(std::vector<Decl>& decls) {
   if (!AtKind(TokenKind::kNewline)) {
-    if (ParseDecl(decls)) EndLine("a declaration");
-    else SkipLine();
+    if (ParseDecl(decls))
+      EndLine("a declaration");
+    else
+      SkipLine();
     return;
   }
   Take();
@@ -17,8 +19,10 @@ void Parser::ParseDeclGroup(std::vector<Decl>& decls) {
   Take();
   while (!AtKind(TokenKind::kDedent) && !AtKind(TokenKind::kEnd)) {
     ClearFailure();
-    if (ParseDecl(decls)) EndLine("a declaration");
-    else SkipLine();
+    if (ParseDecl(decls))
+      EndLine("a declaration");
+    else
+      SkipLine();
   }
   if (AtKind(TokenKind::kDedent)) Take();
 }

@@ -1,8 +1,8 @@
 #include "koord/syntax/format.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "lang/expr_printer.h"
 
@@ -48,13 +48,17 @@ class Formatter {
                        [&](const lang::Comment& c) { return c.alone && c.line == line - 1; })) {
       --line;
     }
-    return line > 1 && sources_->Line(span.file, line - 1).find_first_not_of(" \t\r") == std::string_view::npos;
+    return line > 1 &&
+           sources_->Line(span.file, line - 1).find_first_not_of(" \t\r") == std::string_view::npos;
   }
 
   void FlushComments(uint32_t before) {
     for (; next_comment_ < comments_.size() && comments_[next_comment_].line < before; ++next_comment_) {
       const lang::Comment& comment = comments_[next_comment_];
       Raw(comment.text.empty() ? "#" : "# " + comment.text);
+      // A comment that stands apart stays apart.
+      const std::string_view below = sources_->Line(comment.span.file, comment.line + 1);
+      if (comment.alone && below.find_first_not_of(" \t\r") == std::string_view::npos) gap_ = true;
     }
   }
 
@@ -64,7 +68,8 @@ class Formatter {
     out_ += std::string(static_cast<size_t>(depth_) * 4, ' ') + text + "\n";
   }
 
-  // One line of output that stands for what begins at `span`; comments above it come first, one behind it at its end.
+  // One line of output that stands for what begins at `span`; comments above it come first, one behind it at
+  // its end.
   void Line(diag::Span span, std::string text) {
     if (sources_ != nullptr && span.file.valid()) {
       const uint32_t line = LineOf(span);
@@ -84,7 +89,8 @@ class Formatter {
   std::string Text(const lang::TypeSyntax& t) const { return PrintType(program_.exprs, t); }
 
   std::string Text(const Decl& d) const {
-    std::string text = d.members.empty() ? Text(d.type) : fmt::format("enum {{{}}}", fmt::join(d.members, ", "));
+    std::string text =
+        d.members.empty() ? Text(d.type) : fmt::format("enum {{{}}}", fmt::join(d.members, ", "));
     text += " " + d.name;
     for (const ExprId dim : d.dimensions) text += fmt::format("[{}]", dim.valid() ? Text(dim) : "");
     if (d.initial.valid()) text += " = " + Text(d.initial);
@@ -137,7 +143,8 @@ class Formatter {
     Line(item.span, item.name + ":");
     ++depth_;
     if (item.pre.valid()) {
-      Line(program_.exprs[item.pre].span, fmt::format("pre{}: {}", item.urgent ? " urgent" : "", Text(item.pre)));
+      Line(program_.exprs[item.pre].span,
+           fmt::format("pre{}: {}", item.urgent ? " urgent" : "", Text(item.pre)));
     }
     Raw("eff:");
     Body(item.body);
@@ -147,26 +154,52 @@ class Formatter {
 
   void Print(const AssumeDef& item) {
     switch (item.kind) {
-      case AssumeKind::kInitially: return Line(Whole(item.span, item.body), "assume initially: " + Text(item.body));
+      case AssumeKind::kInitially:
+        return Statement(item.span, "assume initially:", item.body);
       case AssumeKind::kFact:
-        return Line(Whole(item.span, item.body),
-                    item.name.empty() ? "assume " + Text(item.body) : fmt::format("assume {}: {}", item.name, Text(item.body)));
-      case AssumeKind::kPort: break;
+        return Statement(item.span, item.name.empty() ? "assume" : fmt::format("assume {}:", item.name),
+                         item.body);
+      case AssumeKind::kPort:
+        break;
     }
     const std::string name = item.name.empty() ? item.module : fmt::format("{}.{}", item.module, item.name);
-    if (!item.when.valid()) return Line(Whole(item.span, item.body), fmt::format("assume {} always {}", name, Text(item.body)));
+    if (!item.when.valid()) return Statement(item.span, fmt::format("assume {} always", name), item.body);
     Line(Whole(item.span, item.when), fmt::format("assume {} when {}", name, Text(item.when)));
     ++depth_;
     Line(program_.exprs[item.body].span, "always " + Text(item.body));
     --depth_;
   }
   void Print(const SummaryDef& item) {
-    Line(Whole(item.span, item.body), fmt::format("summary {}({}) -> {}: {}", item.function, fmt::join(item.parameters, ", "),
-                                                  item.result, Text(item.body)));
+    Statement(
+        item.span,
+        fmt::format("summary {}({}) -> {}:", item.function, fmt::join(item.parameters, ", "), item.result),
+        item.body);
   }
   void Print(const InvariantDef& item) {
-    Line(Whole(item.span, item.body), item.name.empty() ? "invariant: " + Text(item.body)
-                                                        : fmt::format("invariant {}: {}", item.name, Text(item.body)));
+    Statement(item.span, item.name.empty() ? "invariant:" : fmt::format("invariant {}:", item.name),
+              item.body);
+  }
+  // `head body`, on two lines if it is long: behind the variables of a quantifier, or else behind the head.
+  void Statement(diag::Span start, const std::string& head, ExprId body) {
+    constexpr size_t kWidth = 110;
+    const lang::Expr& e = program_.exprs[body];
+    std::string first = head;
+    std::string second = Text(body);
+    if (sources_ == nullptr || first.size() + second.size() < kWidth ||
+        second.find('\n') != std::string::npos) {
+      return Line(Whole(start, body), first + " " + second);
+    }
+    if (e.kind == lang::ExprKind::kQuantifier) {
+      const std::string inner = Text(e.args[0]);
+      first += " " + second.substr(0, second.size() - inner.size() - 1);
+      second = inner;
+    } else if (!first.ends_with(':')) {
+      return Line(Whole(start, body), first + " " + second);  // only behind a colon can a line go on
+    }
+    Line(Whole(start, body), first);
+    ++depth_;
+    Raw(second);
+    --depth_;
   }
   diag::Span Whole(diag::Span start, ExprId last) const { return start.To(program_.exprs[last].span); }
 
@@ -183,15 +216,24 @@ class Formatter {
       return text;
     };
     switch (s.kind) {
-      case StmtKind::kAssign: return Line(s.span, fmt::format("{} = {}", Text(s.target), Text(s.value)));
-      case StmtKind::kAddAssign: return Line(s.span, fmt::format("{} += {}", Text(s.target), Text(s.value)));
-      case StmtKind::kIncrement: return Line(s.span, Text(s.target) + "++");
-      case StmtKind::kCall: return Line(s.span, Text(s.value));
-      case StmtKind::kStream: return Line(s.span, Text(s.target) + operands());
-      case StmtKind::kStop: return Line(s.span, "stop");
-      case StmtKind::kBreak: return Line(s.span, "break");
-      case StmtKind::kContinue: return Line(s.span, "continue");
-      case StmtKind::kReturn: return Line(s.span, s.value.valid() ? "return " + Text(s.value) : "return");
+      case StmtKind::kAssign:
+        return Line(s.span, fmt::format("{} = {}", Text(s.target), Text(s.value)));
+      case StmtKind::kAddAssign:
+        return Line(s.span, fmt::format("{} += {}", Text(s.target), Text(s.value)));
+      case StmtKind::kIncrement:
+        return Line(s.span, Text(s.target) + "++");
+      case StmtKind::kCall:
+        return Line(s.span, Text(s.value));
+      case StmtKind::kStream:
+        return Line(s.span, Text(s.target) + operands());
+      case StmtKind::kStop:
+        return Line(s.span, "stop");
+      case StmtKind::kBreak:
+        return Line(s.span, "break");
+      case StmtKind::kContinue:
+        return Line(s.span, "continue");
+      case StmtKind::kReturn:
+        return Line(s.span, s.value.valid() ? "return " + Text(s.value) : "return");
       case StmtKind::kIf:
         Line(s.span, fmt::format("{} {}:", if_word, Text(s.value)));
         Body(s.body);
@@ -225,7 +267,9 @@ class Formatter {
 
 }  // namespace
 
-std::string Format(const diag::SourceSet& sources, const Program& program) { return Formatter(&sources, program).Run(); }
+std::string Format(const diag::SourceSet& sources, const Program& program) {
+  return Formatter(&sources, program).Run();
+}
 
 std::string Skeleton(const Program& program) { return Formatter(nullptr, program).Run(); }
 

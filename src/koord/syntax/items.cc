@@ -12,13 +12,15 @@ using lang::TokenKind;
 
 bool IsReservedWord(std::string_view word) {
   static constexpr std::array<std::string_view, 31> kWords = {
-      "using", "def",   "actuators", "sensors",  "allread", "allwrite", "local",  "init",  "pre", "eff", "if",
-      "elif",  "else",  "for",       "in",       "atomic",  "return",   "break",  "stop",  "and", "or",  "not",
-      "pid",   "forall", "exists",   "implies",  "continue", "true",    "false",  "True",  "False"};
+      "using",  "def",     "actuators", "sensors", "allread", "allwrite", "local", "init",
+      "pre",    "eff",     "if",        "elif",    "else",    "for",      "in",    "atomic",
+      "return", "break",   "stop",      "and",     "or",      "not",      "pid",   "forall",
+      "exists", "implies", "continue",  "true",    "false",   "True",     "False"};
   return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
 }
 
-void Parse(const diag::SourceSet& sources, diag::FileId file, Program& program, diag::Diagnostics& diagnostics) {
+void Parse(const diag::SourceSet& sources, diag::FileId file, Program& program,
+           diag::Diagnostics& diagnostics) {
   const lang::TokenStream stream = lang::Lex(sources, file, {}, diagnostics);
   program.comments.insert(program.comments.end(), stream.comments.begin(), stream.comments.end());
   Parser(stream, program, diagnostics).ParseProgram();
@@ -137,7 +139,8 @@ void Parser::ParseFunction(std::string name, Span span) {
   }
   Expect(")", "the parameters");
   if (Accept("->")) def.result = ParseType();
-  if (!failed() && (AtKind(TokenKind::kNewline) || AtKind(TokenKind::kEnd)) && Peek(1).kind != TokenKind::kIndent) {
+  if (!failed() && (AtKind(TokenKind::kNewline) || AtKind(TokenKind::kEnd)) &&
+      Peek(1).kind != TokenKind::kIndent) {
     // Only a signature: an external function.
     def.has_body = false;
     EndLine("the signature");

@@ -105,7 +105,8 @@ class Writer {
     json j = At(d.span);
     j["name"] = d.name;
     std::string type = d.members.empty() ? Type(d.type) : "enum";
-    for (const ExprId dim : d.dimensions) type += "[" + (dim.valid() ? lang::PrintExpr(program_.exprs, dim) : "") + "]";
+    for (const ExprId dim : d.dimensions)
+      type += "[" + (dim.valid() ? lang::PrintExpr(program_.exprs, dim) : "") + "]";
     j["type"] = type;
     if (!d.members.empty()) j["members"] = d.members;
     if (d.initial.valid()) j["initial"] = Ex(d.initial);
@@ -122,12 +123,16 @@ class Writer {
     return j;
   }
   json Statement(const Stmt& s) const {
-    constexpr const char* kNames[] = {"assign", "add-assign", "increment", "call", "stream", "stop", "break",
-                                      "continue", "return", "if", "for-in", "for-range", "atomic"};
+    constexpr const char* kNames[] = {"assign", "add-assign", "increment", "call",   "stream",
+                                      "stop",   "break",      "continue",  "return", "if",
+                                      "for-in", "for-range",  "atomic"};
     json j = At(s.span);
     j["statement"] = kNames[static_cast<size_t>(s.kind)];
     if (s.target.valid()) j["target"] = Ex(s.target);
-    if (s.value.valid()) j[s.kind == StmtKind::kIf ? "condition" : s.kind == StmtKind::kForRange ? "first" : "value"] = Ex(s.value);
+    if (s.value.valid())
+      j[s.kind == StmtKind::kIf         ? "condition"
+        : s.kind == StmtKind::kForRange ? "first"
+                                        : "value"] = Ex(s.value);
     if (s.kind == StmtKind::kForRange) j["end"] = Ex(s.operands[0]);
     if (s.kind == StmtKind::kStream) {
       j["operands"] = json::array();

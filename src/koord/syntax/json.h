@@ -7,8 +7,9 @@
 
 namespace rondo::koord {
 
-/// The syntax tree for other tools: {"items": [{"item": "event", "name": ..., "line": ..., "column": ..., ...}]}.
-/// Expressions are objects with "expr" and their parts; every node that a person wrote has a position.
+/// The syntax tree for other tools: {"items": [{"item": "event", "name": ..., "line": ..., "column": ...,
+/// ...}]}. Expressions are objects with "expr" and their parts; every node that a person wrote has a
+/// position.
 nlohmann::json ToJson(const diag::SourceSet& sources, const Program& program);
 
 }  // namespace rondo::koord

@@ -6,8 +6,8 @@
 
 namespace rondo::koord {
 
-/// The recursive-descent parser. Its grammar is split over files by what it reads: items, declarations, statements,
-/// specifications.
+/// The recursive-descent parser. Its grammar is split over files by what it reads: items, declarations,
+/// statements, specifications.
 class Parser : public lang::ExprParser {
  public:
   Parser(const lang::TokenStream& stream, Program& program, diag::Diagnostics& diagnostics)

@@ -15,7 +15,8 @@ bool Parser::ParseSpecItem() {
   const Span start = Peek().span;
   if (At("param") && name_follows) {
     ParseParam(start);
-  } else if (At("assume") && (next.kind != TokenKind::kPunctuation || next.text == ":" || next.text == "(" || next.text == "-")) {
+  } else if (At("assume") && (next.kind != TokenKind::kPunctuation || next.text == ":" || next.text == "(" ||
+                              next.text == "-")) {
     ParseAssume(start);
   } else if (At("summary") && name_follows) {
     ParseSummary(start);
@@ -28,11 +29,13 @@ bool Parser::ParseSpecItem() {
   return true;
 }
 
-// A specification may go on in deeper lines. Takes the line end if `word` (or anything, if empty) follows there.
+// A specification may go on in deeper lines. Takes the line end if `word` (or anything, if empty) follows
+// there.
 bool Parser::AcceptContinuation(std::string_view word) {
   if (!AtKind(TokenKind::kNewline)) return false;
   const bool deeper = Peek(1).kind == TokenKind::kIndent && (word.empty() || Peek(2).text == word);
-  const bool same = continuation_ > 0 && (word.empty() ? Peek(1).kind != TokenKind::kDedent : Peek(1).text == word);
+  const bool same =
+      continuation_ > 0 && (word.empty() ? Peek(1).kind != TokenKind::kDedent : Peek(1).text == word);
   if (!deeper && !same) return false;
   Take();
   if (deeper) {

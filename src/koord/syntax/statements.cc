@@ -95,8 +95,10 @@ void Parser::ParseStatement(std::vector<Stmt>& out) {
       if (AtKind(TokenKind::kNewline)) break;
       good = ParseSimple(out);
     } while (good && Accept(";"));
-    if (good) EndLine("a statement");
-    else SkipLine();
+    if (good)
+      EndLine("a statement");
+    else
+      SkipLine();
   }
   --nesting_;
 }
@@ -146,8 +148,10 @@ void Parser::ParseFor(std::vector<Stmt>& out) {
     stmt.operands.push_back(ParseExpr());
   } else {
     stmt.kind = StmtKind::kForIn;
-    if (Expect("in", "the variable of a loop")) stmt.value = ParseExpr();
-    else stmt.value = Fail(stmt.span);
+    if (Expect("in", "the variable of a loop"))
+      stmt.value = ParseExpr();
+    else
+      stmt.value = Fail(stmt.span);
   }
   stmt.span = stmt.span.To(PreviousSpan());
   if (failed()) return SkipLine();

@@ -7,8 +7,9 @@
 
 namespace rondo::solve::cache {
 
-/// Another solver, with its refutations remembered on disk. Only `Unsat` is stored: a model is not worth a file, and
-/// ignorance may end with the next version. The engine's name is part of the question, so a new engine asks again.
+/// Another solver, with its refutations remembered on disk. Only `Unsat` is stored: a model is not worth a
+/// file, and ignorance may end with the next version. The engine's name is part of the question, so a new
+/// engine asks again.
 class CachingSolver : public Solver {
  public:
   CachingSolver(const Solver& solver, const ProofCache& cache) : solver_(solver), cache_(cache) {}

@@ -1,10 +1,9 @@
 #include "solve/cache/proof_cache.h"
 
+#include <fmt/format.h>
 #include <xxhash.h>
 
 #include <cstdlib>
-
-#include <fmt/format.h>
 
 #include "base/file.h"
 

@@ -7,9 +7,9 @@
 
 namespace rondo::solve::cache {
 
-/// Proved obligations on disk, found by content. An entry holds the complete question; a hit compares all of it, so a
-/// hash collision, a damaged or a half-written file can only miss, never prove. Thread-safe; several processes may
-/// share the folder.
+/// Proved obligations on disk, found by content. An entry holds the complete question; a hit compares all of
+/// it, so a hash collision, a damaged or a half-written file can only miss, never prove. Thread-safe; several
+/// processes may share the folder.
 class ProofCache {
  public:
   /// Nothing is read or written when `folder` is empty.

@@ -1,6 +1,7 @@
 #include "solve/smtlib/process.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
@@ -10,8 +11,6 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-
-#include <fmt/format.h>
 
 extern char** environ;
 
@@ -49,7 +48,8 @@ base::Result<ProcessOutput> RunProcess(const std::vector<std::string>& command, 
   pid_t child = 0;
   const int failure = ::posix_spawnp(&child, argv[0], &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (failure != 0) return base::Error{fmt::format("cannot run `{}`: {}", command[0], std::strerror(failure))};
+  if (failure != 0)
+    return base::Error{fmt::format("cannot run `{}`: {}", command[0], std::strerror(failure))};
   in.Close(0);
   out.Close(1);
   ::fcntl(in.ends[1], F_SETFL, O_NONBLOCK);

@@ -15,8 +15,8 @@ struct ProcessOutput {
   std::string text;  ///< standard output, then nothing of standard error
 };
 
-/// Runs `command` (searched in PATH) with `input` on its standard input until it ends, `limit` passes or `stop` asks.
-/// The child is killed in the latter cases. @error when it cannot be started.
+/// Runs `command` (searched in PATH) with `input` on its standard input until it ends, `limit` passes or
+/// `stop` asks. The child is killed in the latter cases. @error when it cannot be started.
 base::Result<ProcessOutput> RunProcess(const std::vector<std::string>& command, const std::string& input,
                                        std::chrono::milliseconds limit, const base::StopToken& stop);
 

@@ -1,9 +1,9 @@
 #include "solve/smtlib/smtlib_solver.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <sstream>
-
-#include <fmt/format.h>
 
 #include "expr/smtlib.h"
 #include "solve/smtlib/process.h"
@@ -15,7 +15,8 @@ SmtLibSolver::SmtLibSolver(const std::string& command) : name_(command) {
   for (std::string word; words >> word;) command_.push_back(word);
   if (command_.size() != 1) return;
   const std::string program = std::filesystem::path(command_[0]).filename();
-  if (program == "cvc5" || program == "cvc4") command_.insert(command_.end(), {"--lang=smt2", "--quiet", "-"});
+  if (program == "cvc5" || program == "cvc4")
+    command_.insert(command_.end(), {"--lang=smt2", "--quiet", "-"});
   if (program == "z3") command_.insert(command_.end(), {"-in", "-smt2"});
 }
 
@@ -26,7 +27,8 @@ Answer SmtLibSolver::Check(const Query& query, const Budget& budget, const base:
   const auto output = RunProcess(command_, expr::ToSmtLib(*query.arena, assertions), budget.time, stop);
   if (!output.ok()) return Unknown{output.error().message};
   if (output.value().timed_out) {
-    return Unknown{stop.cancelled() ? "interrupted" : fmt::format("time-out after {} ms", budget.time.count())};
+    return Unknown{stop.cancelled() ? "interrupted"
+                                    : fmt::format("time-out after {} ms", budget.time.count())};
   }
   std::istringstream lines(output.value().text);
   for (std::string line; std::getline(lines, line);) {

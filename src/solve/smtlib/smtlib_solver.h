@@ -8,7 +8,8 @@ namespace rondo::solve::smtlib {
 /// Gives verdicts only: no core, no values.
 class SmtLibSolver : public Solver {
  public:
-  /// `command` is a program and its arguments, separated by blanks; `cvc5` and `z3` get the arguments that they need.
+  /// `command` is a program and its arguments, separated by blanks; `cvc5` and `z3` get the arguments that
+  /// they need.
   explicit SmtLibSolver(const std::string& command);
 
   std::string name() const override { return name_; }

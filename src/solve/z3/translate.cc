@@ -16,20 +16,29 @@ const Translator::SortInfo& Translator::Sort(expr::SortId id) {
   SortInfo info{context_.bool_sort(), ::z3::func_decl_vector(context_), ::z3::func_decl_vector(context_)};
   const std::string name = "sort " + s.name;
   switch (s.kind) {
-    case SortKind::kBool: break;
-    case SortKind::kInt: info.sort = context_.int_sort(); break;
-    case SortKind::kReal: info.sort = context_.real_sort(); break;
-    case SortKind::kArray: info.sort = context_.array_sort(Sort(s.parts[0]).sort, Sort(s.parts[1]).sort); break;
+    case SortKind::kBool:
+      break;
+    case SortKind::kInt:
+      info.sort = context_.int_sort();
+      break;
+    case SortKind::kReal:
+      info.sort = context_.real_sort();
+      break;
+    case SortKind::kArray:
+      info.sort = context_.array_sort(Sort(s.parts[0]).sort, Sort(s.parts[1]).sort);
+      break;
     case SortKind::kList:
-    case SortKind::kOpaque: info.sort = context_.uninterpreted_sort(name.c_str()); break;
+    case SortKind::kOpaque:
+      info.sort = context_.uninterpreted_sort(name.c_str());
+      break;
     case SortKind::kEnum: {
       std::vector<std::string> names;
       std::vector<const char*> pointers;
       for (const std::string& member : s.names) names.push_back(s.name + "." + member);
       for (const std::string& member : names) pointers.push_back(member.c_str());
       ::z3::func_decl_vector testers(context_);
-      info.sort = context_.enumeration_sort(name.c_str(), static_cast<unsigned>(pointers.size()), pointers.data(),
-                                            info.constructors, testers);
+      info.sort = context_.enumeration_sort(name.c_str(), static_cast<unsigned>(pointers.size()),
+                                            pointers.data(), info.constructors, testers);
       break;
     }
     case SortKind::kRecord: {
@@ -86,20 +95,28 @@ const Translator::SortInfo& Translator::Sort(expr::SortId id) {
   const expr::Term& term = arena_.term(t);
   const auto arg = [&](unsigned i) { return args[static_cast<int>(i)]; };
   switch (term.op) {
-    case Op::kBool: return context_.bool_val(t == arena_.True());
+    case Op::kBool:
+      return context_.bool_val(t == arena_.True());
     case Op::kNumber: {
       const expr::Rational& value = arena_.number(t);
       if (term.sort == arena_.Int()) return context_.int_val(value.Numerator().c_str());
       return context_.real_val((value.Numerator() + "/" + value.Denominator()).c_str());
     }
-    case Op::kMember: return Sort(term.sort).constructors[static_cast<int>(term.payload)]();
+    case Op::kMember:
+      return Sort(term.sort).constructors[static_cast<int>(term.payload)]();
     case Op::kVariable:
-    case Op::kApply: return Function(expr::SymbolId(term.payload))(args);
-    case Op::kNot: return !arg(0);
-    case Op::kAnd: return ::z3::mk_and(args);
-    case Op::kOr: return ::z3::mk_or(args);
-    case Op::kEq: return arg(0) == arg(1);
-    case Op::kIte: return ::z3::ite(arg(0), arg(1), arg(2));
+    case Op::kApply:
+      return Function(expr::SymbolId(term.payload))(args);
+    case Op::kNot:
+      return !arg(0);
+    case Op::kAnd:
+      return ::z3::mk_and(args);
+    case Op::kOr:
+      return ::z3::mk_or(args);
+    case Op::kEq:
+      return arg(0) == arg(1);
+    case Op::kIte:
+      return ::z3::ite(arg(0), arg(1), arg(2));
     case Op::kForall:
     case Op::kExists: {
       ::z3::expr_vector variables(context_);
@@ -107,24 +124,36 @@ const Translator::SortInfo& Translator::Sort(expr::SortId id) {
       const ::z3::expr body = arg(args.size() - 1);
       return term.op == Op::kForall ? ::z3::forall(variables, body) : ::z3::exists(variables, body);
     }
-    case Op::kAdd: return ::z3::sum(args);
-    case Op::kMul: return arg(0) * arg(1);
+    case Op::kAdd:
+      return ::z3::sum(args);
+    case Op::kMul:
+      return arg(0) * arg(1);
     case Op::kDivide:
-    case Op::kIntDiv: return arg(0) / arg(1);
-    case Op::kMod: return ::z3::mod(arg(0), arg(1));
-    case Op::kLe: return arg(0) <= arg(1);
-    case Op::kLt: return arg(0) < arg(1);
-    case Op::kToReal: return ::z3::to_real(arg(0));
-    case Op::kSelect: return ::z3::select(arg(0), arg(1));
-    case Op::kStore: return ::z3::store(arg(0), arg(1), arg(2));
-    case Op::kRecord: return Sort(term.sort).constructors[0](args);
-    case Op::kField: return Sort(arena_.sort_of(arena_.arg(t, 0))).fields[static_cast<int>(term.payload)](args);
+    case Op::kIntDiv:
+      return arg(0) / arg(1);
+    case Op::kMod:
+      return ::z3::mod(arg(0), arg(1));
+    case Op::kLe:
+      return arg(0) <= arg(1);
+    case Op::kLt:
+      return arg(0) < arg(1);
+    case Op::kToReal:
+      return ::z3::to_real(arg(0));
+    case Op::kSelect:
+      return ::z3::select(arg(0), arg(1));
+    case Op::kStore:
+      return ::z3::store(arg(0), arg(1), arg(2));
+    case Op::kRecord:
+      return Sort(term.sort).constructors[0](args);
+    case Op::kField:
+      return Sort(arena_.sort_of(arena_.arg(t, 0))).fields[static_cast<int>(term.payload)](args);
     case Op::kListMake:
     case Op::kListLength:
     case Op::kListAt:
     case Op::kListAppend:
     case Op::kListRemove:
-    case Op::kListSet: return ListFunction(t)(args);
+    case Op::kListSet:
+      return ListFunction(t)(args);
   }
   CHECK(false);
   return context_.bool_val(false);
@@ -133,7 +162,8 @@ const Translator::SortInfo& Translator::Sort(expr::SortId id) {
 Value Translator::Read(const ::z3::expr& value, expr::SortId id) {
   const expr::Sort& s = arena_.sort(id);
   switch (s.kind) {
-    case SortKind::kBool: return {value.is_true()};
+    case SortKind::kBool:
+      return {value.is_true()};
     case SortKind::kInt:
     case SortKind::kReal: {
       const auto number =
@@ -153,7 +183,8 @@ Value Translator::Read(const ::z3::expr& value, expr::SortId id) {
     }
     case SortKind::kArray:
     case SortKind::kList:
-    case SortKind::kOpaque: return {value.to_string()};
+    case SortKind::kOpaque:
+      return {value.to_string()};
   }
   CHECK(false);
   return {};

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <unordered_map>
-
 #include <z3++.h>
+
+#include <unordered_map>
 
 #include "expr/arena.h"
 #include "solve/value.h"

@@ -1,20 +1,20 @@
 #include "solve/z3/z3_solver.h"
 
+#include <fmt/format.h>
+#include <z3++.h>
+
 #include <algorithm>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
-
-#include <fmt/format.h>
-#include <z3++.h>
 
 #include "solve/z3/translate.h"
 
 namespace rondo::solve::z3 {
 namespace {
 
-// Interrupts the context when the token asks for it or its deadline passes: Z3 does not keep its own time-outs in all
-// of its loops.
+// Interrupts the context when the token asks for it or its deadline passes: Z3 does not keep its own
+// time-outs in all of its loops.
 class Watchdog {
  public:
   Watchdog(::z3::context& context, const base::StopToken& stop)
@@ -93,11 +93,13 @@ Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop
       }
       return sat;
     }
-    case ::z3::unknown: break;
+    case ::z3::unknown:
+      break;
   }
   if (stop.cancelled()) return Unknown{"interrupted"};
   const std::string reason = solver.reason_unknown();
-  if (reason == "timeout" || reason == "canceled" || limited.expired()) return Unknown{fmt::format("time-out after {} ms", budget.time.count())};
+  if (reason == "timeout" || reason == "canceled" || limited.expired())
+    return Unknown{fmt::format("time-out after {} ms", budget.time.count())};
   return Unknown{"Z3: " + reason};
 }
 

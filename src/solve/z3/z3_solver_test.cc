@@ -13,7 +13,9 @@ class Z3 : public testing::Test {
   Answer Check(std::vector<Assertion> assertions, std::vector<TermId> wanted = {}) {
     return Z3Solver().Check({&arena_, std::move(assertions), std::move(wanted)}, {}, {});
   }
-  TermId Const(const char* name, expr::SortId sort) { return arena_.Variable(arena_.Declare(name, {}, sort)); }
+  TermId Const(const char* name, expr::SortId sort) {
+    return arena_.Variable(arena_.Declare(name, {}, sort));
+  }
 
   Arena arena_;
 };
@@ -21,8 +23,9 @@ class Z3 : public testing::Test {
 TEST_F(Z3, NamesTheGroupsOfARefutation) {
   const TermId x = Const("x", arena_.Real());
   const TermId zero = arena_.Number(arena_.Real(), 0);
-  const Answer answer =
-      Check({{arena_.Lt(x, zero), "low"}, {arena_.Lt(zero, x), "high"}, {arena_.Not(arena_.Eq(x, zero)), "unused"}});
+  const Answer answer = Check({{arena_.Lt(x, zero), "low"},
+                               {arena_.Lt(zero, x), "high"},
+                               {arena_.Not(arena_.Eq(x, zero)), "unused"}});
   ASSERT_TRUE(std::holds_alternative<Unsat>(answer));
   EXPECT_EQ(std::get<Unsat>(answer).core, (std::vector<std::string>{"high", "low"}));
 }

@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""The command line as people use it: exit statuses, missing files, help, completion, cache, files written, Ctrl-C.
+
+  commands.py RONDO
+"""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+RONDO = str(pathlib.Path(sys.argv[1]).resolve())
+FOLDER = pathlib.Path(tempfile.mkdtemp())
+ENV = {**os.environ, "XDG_CACHE_HOME": str(FOLDER / "cache"), "NO_COLOR": "1"}
+results = {"passed": 0, "failed": 0}
+
+
+def rondo(*args, **more):
+    return subprocess.run([RONDO, *args], cwd=ROOT, capture_output=True, text=True, timeout=300, env=ENV, **more)
+
+
+def check(name, good, detail=""):
+    results["passed" if good else "failed"] += 1
+    if not good:
+        print(f"{name}: {detail}")
+
+
+LINEFORM = "examples/koord/lineform.koord"
+
+for args in (["--help"], ["check", "--help"], ["prove", "--help"], ["fmt", "--help"], ["explain", "--help"], ["ast", "--help"]):
+    done = rondo(*args)
+    check(f"{args}", done.returncode == 0 and "example" in done.stdout, done.stdout + done.stderr)
+for args in ([], ["nonsense"], ["prove"], ["prove", LINEFORM, "--robots", "0"], ["explain", "koord-nonsense"]):
+    done = rondo(*args)
+    check(f"usage {args}", done.returncode == 2, f"status {done.returncode}")
+check("suggestion", "koord-arity" in rondo("explain", "koord-arty").stderr)
+
+done = rondo("prove", "missing.koord")
+check("missing file", done.returncode == 1 and "cannot read `missing.koord`: no such file" in done.stderr, done.stderr)
+done = rondo("check", "examples")
+check("folder", done.returncode == 1 and "is a folder" in done.stderr, done.stderr)
+
+# Exit statuses.
+check("proved", rondo("prove", LINEFORM).returncode == 0)
+check("refuted", rondo("prove", "examples/koord/mutex_naive.koord").returncode == 1)
+unknown = rondo("prove", "--no-cache", "tests/mutants/delivery_no_remove.koord", "--timeout", "1")
+check("unknown", unknown.returncode == 3 and "unknown: taken" in unknown.stdout, unknown.stdout[-500:])
+
+# The cache: the second run finds the proofs; a changed program does not.
+cached = rondo("prove", LINEFORM)
+check("cache", "from the cache" in cached.stdout, cached.stdout)
+copy = FOLDER / "copy.koord"
+copy.write_text((ROOT / LINEFORM).read_text().replace("mid([x[pid + 1], x[pid - 1]])", "x[pid + 1]"))
+check("cache of another program", rondo("prove", str(copy)).returncode == 0)
+copy.write_text((ROOT / LINEFORM).read_text().replace("mid([x[pid + 1], x[pid - 1]])", "x[pid + 1] + x[pid - 1]"))
+check("a wrong program after a right one", rondo("prove", str(copy)).returncode == 1)
+
+# Obligations as files that another solver decides alike.
+out = FOLDER / "smt"
+check("smt-out", rondo("prove", "--no-cache", LINEFORM, "--smt-out", str(out)).returncode == 0)
+files = sorted(out.glob("*.smt2"))
+check("smt files", len(files) == 5, [f.name for f in files])
+for file in files:
+    answer = subprocess.run(["cvc5", "--lang=smt2", str(file)], capture_output=True, text=True, timeout=300).stdout
+    check(f"cvc5 on {file.name}", answer.strip() == "unsat", answer)
+done = rondo("prove", "--no-cache", LINEFORM, "--smt-out", "/proc/nowhere")
+check("smt-out into nowhere", done.returncode == 1 and "could not write" in done.stdout, done.stdout)
+
+# JSON says what the text says.
+report = json.loads(rondo("prove", "--json", "examples/koord/mutex_naive.koord").stdout)
+check("json", report["status"] == 1 and report["diagnostics"][0]["kind"] == "koord-refuted", report)
+check("ast", json.loads(rondo("ast", "--json", LINEFORM).stdout)["items"][0]["name"] == "Motion")
+
+# A specification beside the program, or elsewhere.
+(FOLDER / "p.koord").write_text("local:\n    int n = 0\nStep:\n    eff:\n        n = 1\n")
+check("no invariant", "koord-no-invariant" in rondo("prove", str(FOLDER / "p.koord")).stderr)
+(FOLDER / "p.spec").write_text("invariant small: forall i in ID: n[i] <= 1 and n[i] >= 0\n")
+check("spec beside", rondo("prove", str(FOLDER / "p.koord")).returncode == 0)
+(FOLDER / "other.spec").write_text("invariant zero: forall i in ID: n[i] == 0\n")
+check("--spec", rondo("prove", str(FOLDER / "p.koord"), "--spec", str(FOLDER / "other.spec")).returncode == 1)
+(FOLDER / "p.spec").write_text("invariant small: forall i in ID: m[i] <= 1\n")
+wrong = rondo("check", str(FOLDER / "p.koord"))
+check("error in the spec", "p.spec:1:" in wrong.stderr and wrong.returncode == 1, wrong.stderr)
+
+# Formatting: in place, checked, never over an error.
+ugly = FOLDER / "ugly.koord"
+ugly.write_text("local: int n # count\nStep:\n  pre (n=1)\n  eff: n=2 // two\n")
+check("fmt --check", rondo("fmt", "--check", str(ugly)).returncode == 1)
+check("fmt", rondo("fmt", str(ugly)).returncode == 0)
+check("fmt --check after", rondo("fmt", "--check", str(ugly)).returncode == 0, ugly.read_text())
+check("comments survive", "# count" in ugly.read_text() and "# two" in ugly.read_text(), ugly.read_text())
+ugly.write_text("local: int\n")
+check("fmt of an error", rondo("fmt", str(ugly)).returncode == 1 and ugly.read_text() == "local: int\n")
+for example in sorted((ROOT / "examples/koord").iterdir()):
+    done = rondo("fmt", "--check", str(example))
+    check(f"{example.name} is formatted", done.returncode == 0, done.stdout + done.stderr)
+
+for shell in ("bash", "zsh", "fish"):
+    script = rondo("completion", shell).stdout
+    check(f"completion {shell}", "prove" in script and "robots" in script)
+check("bash reads it", subprocess.run(["bash", "-n"], input=rondo("completion", "bash").stdout, text=True).returncode == 0)
+
+# A disagreeing solver is reported loudly.
+liar = FOLDER / "liar"
+liar.write_text("#!/bin/sh\ncat > /dev/null\necho sat\n")
+liar.chmod(0o755)
+done = rondo("prove", "--no-cache", LINEFORM, "--cross-check", str(liar))
+check("disagreement", done.returncode == 4 and "koord-disagreement" in done.stderr and "proved for" not in done.stdout, done.stdout)
+
+# Ctrl-C: a clean end, what was finished is printed, the status says that not all is known.
+slow = FOLDER / "slow.koord"
+slow.write_text((ROOT / "tests/mutants/delivery_margin.koord").read_text())
+process = subprocess.Popen([RONDO, "prove", "--no-cache", str(slow)], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENV)
+time.sleep(0.5)  # any moment will do
+process.send_signal(signal.SIGINT)
+stdout, stderr = process.communicate(timeout=120)
+check("Ctrl-C", process.returncode in (1, 3) and "proved for every N: separated" not in stdout, f"{process.returncode} {stdout} {stderr}")
+
+print(f"{results['passed']} passed, {results['failed']} failed")
+sys.exit(1 if results["failed"] else 0)

@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""The minimal example of every diagnostic kind reports exactly that kind, at its severity.
+
+  explain.py RONDO
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+
+def main():
+    rondo = str(pathlib.Path(sys.argv[1]).resolve())
+    passed, failed = 0, 0
+    listed = json.loads(subprocess.run([rondo, "explain", "--json"], capture_output=True, check=True).stdout)
+    with tempfile.TemporaryDirectory() as folder:
+        # A solver that always says what is wrong, to make a disagreement.
+        liar = pathlib.Path(folder) / "liar"
+        liar.write_text("#!/bin/sh\ncat > /dev/null\necho sat\n")
+        liar.chmod(0o755)
+        for kind in listed:
+            info = json.loads(subprocess.run([rondo, "explain", "--json", kind["kind"]], capture_output=True, check=True).stdout)
+            program = pathlib.Path(folder) / (kind["kind"] + ".koord")
+            program.write_text(info["example"])
+            args = [rondo, info["verb"], "--json", str(program)]
+            if info["verb"] == "prove":
+                args += ["--no-cache", "--timeout", "5"]
+            if kind["kind"] == "koord-disagreement":
+                args += ["--cross-check", str(liar)]
+            done = subprocess.run(args, capture_output=True, text=True, timeout=300)
+            try:
+                kinds = {(d["kind"], d["severity"]) for d in json.loads(done.stdout)["diagnostics"]}
+            except ValueError:
+                kinds = {(done.stdout + done.stderr, "")}
+            if kinds == {(kind["kind"], kind["severity"])}:
+                passed += 1
+            else:
+                failed += 1
+                print(f"{kind['kind']}: the example reports {sorted(kinds)}")
+    print(f"{passed} passed, {failed} failed")
+    return 1 if failed or passed < 40 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
