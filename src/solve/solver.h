@@ -9,7 +9,7 @@
 
 #include "base/stop.h"
 #include "expr/arena.h"
-#include "solve/value.h"
+#include "expr/value.h"
 
 /// One question, several engines: is there an interpretation that satisfies all assertions?
 namespace rondo::solve {
@@ -19,6 +19,8 @@ struct Assertion {
   expr::TermId formula;
   std::string group;
 };
+
+using Value = expr::Value;
 
 struct Query {
   const expr::Arena* arena = nullptr;

@@ -86,7 +86,7 @@ class Storyteller {
       for (const Value& f : *fields) text += (text.empty() ? "" : ", ") + Show(f);
       return fmt::format("({})", text);
     }
-    std::string text = solve::ToString(value);
+    std::string text = expr::ToString(value);
     // Elements of opaque sorts have long names; only their identity matters.
     if (const size_t at = text.find("!val!"); at != std::string::npos) {
       text = "#" + text.substr(at + 5);

@@ -159,7 +159,7 @@ const Translator::SortInfo& Translator::Sort(expr::SortId id) {
   return context_.bool_val(false);
 }
 
-Value Translator::Read(const ::z3::expr& value, expr::SortId id) {
+expr::Value Translator::Read(const ::z3::expr& value, expr::SortId id) {
   const expr::Sort& s = arena_.sort(id);
   switch (s.kind) {
     case SortKind::kBool:
@@ -176,7 +176,7 @@ Value Translator::Read(const ::z3::expr& value, expr::SortId id) {
       return {name.substr(s.name.size() + 1)};
     }
     case SortKind::kRecord: {
-      Value::Fields fields;
+      expr::Value::Fields fields;
       if (value.num_args() != s.parts.size()) throw ::z3::exception("not a record value");
       for (unsigned i = 0; i < value.num_args(); ++i) fields.push_back(Read(value.arg(i), s.parts[i]));
       return {std::move(fields)};

@@ -5,7 +5,7 @@
 #include <unordered_map>
 
 #include "expr/arena.h"
-#include "solve/value.h"
+#include "expr/value.h"
 
 namespace rondo::solve::z3 {
 
@@ -18,7 +18,7 @@ class Translator {
 
   /// The value of an evaluated expression of this sort.
   /// Throws z3::exception when it is not a value, e.g. an irrational algebraic number.
-  Value Read(const ::z3::expr& value, expr::SortId sort);
+  expr::Value Read(const ::z3::expr& value, expr::SortId sort);
 
  private:
   struct SortInfo {

@@ -6,22 +6,22 @@
 
 #include "expr/rational.h"
 
-namespace rondo::solve {
+namespace rondo::expr {
 
 /// A value of a model: a truth value, a number, the name of a member of an enumeration or of an element of an
 /// opaque sort, or a record's fields.
 struct Value {
   using Fields = std::vector<Value>;
-  std::variant<bool, expr::Rational, std::string, Fields> data;
+  std::variant<bool, Rational, std::string, Fields> data;
 
   bool IsBool() const { return std::holds_alternative<bool>(data); }
-  bool IsNumber() const { return std::holds_alternative<expr::Rational>(data); }
+  bool IsNumber() const { return std::holds_alternative<Rational>(data); }
   bool AsBool() const { return std::get<bool>(data); }
-  const expr::Rational& AsNumber() const { return std::get<expr::Rational>(data); }
+  const Rational& AsNumber() const { return std::get<Rational>(data); }
   friend bool operator==(const Value&, const Value&) = default;
 };
 
 /// `true`, `0.5`, `red`, `(1, 2, 3)`; numbers without a short decimal as fractions.
 std::string ToString(const Value& value);
 
-}  // namespace rondo::solve
+}  // namespace rondo::expr

@@ -1,6 +1,6 @@
-#include "solve/value.h"
+#include "expr/value.h"
 
-namespace rondo::solve {
+namespace rondo::expr {
 
 std::string ToString(const Value& value) {
   if (value.IsBool()) return value.AsBool() ? "true" : "false";
@@ -14,4 +14,4 @@ std::string ToString(const Value& value) {
   return text + ")";
 }
 
-}  // namespace rondo::solve
+}  // namespace rondo::expr
