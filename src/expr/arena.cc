@@ -1,5 +1,6 @@
 #include "expr/arena.h"
 
+#include <utility>
 #include <fmt/format.h>
 
 #include "base/check.h"

@@ -1,3 +1,4 @@
+#include <utility>
 #include <fmt/format.h>
 
 #include "base/check.h"
