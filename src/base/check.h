@@ -33,6 +33,9 @@ struct CheckVoid {
 
 }  // namespace rondo::base
 
+// Not in parentheses: the message is streamed into its end.
+// NOLINTBEGIN(bugprone-macro-parentheses)
 #define CHECK(condition)             \
   (condition) ? static_cast<void>(0) \
               : ::rondo::base::CheckVoid() & ::rondo::base::CheckFailure(#condition, __FILE__, __LINE__)
+// NOLINTEND(bugprone-macro-parentheses)

@@ -109,6 +109,18 @@ std::string RenderText(const SourceSet& sources, const Diagnostic& d, Colour col
     }
   }
   for (const std::string& help : d.helps) out += fmt::format("{} {}\n", paint("32", "help:"), help);
+  for (const FixIt& fix : d.fixes) {
+    const Position begin = sources.Locate(fix.span.file, fix.span.begin);
+    const Position end = sources.Locate(fix.span.file, fix.span.end);
+    if (begin.line != end.line || fix.replacement.find('\n') != std::string::npos) continue;
+    const std::string_view line = sources.Line(fix.span.file, begin.line);
+    const size_t length = fix.span.end - fix.span.begin;
+    const auto at = fix.span.begin - static_cast<size_t>(line.data() - sources.text(fix.span.file).data());
+    out += fmt::format(
+        "{}\n{} {}{}{}\n{} {:{}}{}\n", bar, paint("34", fmt::format("{:>{}} |", begin.line, gutter)),
+        Flatten(line.substr(0, at)), paint("32", fix.replacement), Flatten(line.substr(at + length)), bar, "",
+        begin.column - 1, paint("32", std::string(std::max(1u, CountCodePoints(fix.replacement)), '~')));
+  }
   return out;
 }
 

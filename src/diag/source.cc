@@ -43,10 +43,6 @@ std::string_view SourceSet::Line(FileId file, uint32_t line) const {
   return result;
 }
 
-uint32_t SourceSet::LineStart(FileId file, uint32_t line) const {
-  return files_[file.index()].line_starts[line - 1];
-}
-
 uint32_t CountCodePoints(std::string_view text) {
   uint32_t count = 0;
   for (const char c : text) {

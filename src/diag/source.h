@@ -40,7 +40,6 @@ class SourceSet {
   Position Locate(FileId file, uint32_t offset) const;
   /// The text of a 1-based line without its line end; empty when there is no such line.
   std::string_view Line(FileId file, uint32_t line) const;
-  uint32_t LineStart(FileId file, uint32_t line) const;
 
  private:
   struct File {

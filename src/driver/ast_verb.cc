@@ -29,10 +29,11 @@ void AddAstVerb(CLI::App& app, int& status) {
       status = kRejected;
       return;
     }
-    Print(options->json ? koord::ToJson(session.sources, *program)
-                                  .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                              "\n"
-                        : koord::Skeleton(*program));
+    if (options->json) {
+      PrintJson(koord::ToJson(session.sources, *program));
+    } else {
+      Print(koord::Skeleton(*program));
+    }
   });
 }
 

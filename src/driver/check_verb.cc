@@ -28,16 +28,14 @@ int Run(const Options& options) {
       readable = false;
       continue;
     }
-    if (session.diagnostics.errors() == before) koord::Check(session.sources, *program, session.diagnostics);
+    if (session.diagnostics.errors() == before) koord::Check(*program, session.diagnostics);
   }
   const bool good = readable && !session.diagnostics.has_errors();
   if (options.json) {
     nlohmann::json list = nlohmann::json::array();
     for (const diag::Diagnostic& d : session.diagnostics.Sorted())
       list.push_back(diag::RenderJson(session.sources, d));
-    Print(nlohmann::json{{"command", "check"}, {"ok", good}, {"diagnostics", list}}.dump(
-              2, ' ', false, nlohmann::json::error_handler_t::replace) +
-          "\n");
+    PrintJson({{"command", "check"}, {"ok", good}, {"diagnostics", list}});
   } else {
     PrintDiagnostics(session.sources, session.diagnostics);
   }

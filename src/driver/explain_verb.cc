@@ -23,14 +23,12 @@ int Explain(const std::string& id, bool json) {
     return kUsage;
   }
   if (json) {
-    Print(nlohmann::json{{"kind", info->id},
-                         {"severity", diag::SeverityName(info->severity)},
-                         {"summary", info->summary},
-                         {"explanation", info->explanation},
-                         {"example", info->example},
-                         {"verb", info->verb}}
-              .dump(2) +
-          "\n");
+    PrintJson({{"kind", info->id},
+               {"severity", diag::SeverityName(info->severity)},
+               {"summary", info->summary},
+               {"explanation", info->explanation},
+               {"example", info->example},
+               {"verb", info->verb}});
     return kEstablished;
   }
   std::string example;
@@ -72,7 +70,7 @@ void AddExplainVerb(CLI::App& app, int& status) {
       else
         Print(fmt::format("{:28} {:8} {}\n", info.id, diag::SeverityName(info.severity), info.summary));
     }
-    if (options->json) Print(list.dump(2) + "\n");
+    if (options->json) PrintJson(list);
   });
 }
 

@@ -51,12 +51,10 @@ int Run(const Options& options) {
   if (!program) return kRejected;
   koord::Model model;
   const bool parsed = !session.diagnostics.has_errors();
-  if (parsed) model = koord::Check(session.sources, *program, session.diagnostics);
+  if (parsed) model = koord::Check(*program, session.diagnostics);
   const auto finish_early = [&](int status) {
     if (options.json)
-      Print(ProveJson(session, options.file, nullptr, status)
-                .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-            "\n");
+      PrintJson(ProveJson(session, options.file, nullptr, status));
     else
       PrintDiagnostics(session.sources, session.diagnostics);
     return status;
@@ -85,14 +83,12 @@ int Run(const Options& options) {
     prove.progress = [&](size_t done, size_t total, const std::string& what) {
       line.Show(fmt::format("[{}/{}] {}", done, total, what));
     };
-    report = koord::Prove(session.sources, model, prove, session.diagnostics);
+    report = koord::Prove(model, prove, session.diagnostics);
   }
   if (report.rows.empty()) return finish_early(kRejected);
   const int status = StatusOf(report);
   if (options.json) {
-    Print(ProveJson(session, options.file, &report, status)
-              .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-          "\n");
+    PrintJson(ProveJson(session, options.file, &report, status));
     return status;
   }
   Print(ProveHeader(options.file, report, prove, options.no_cache ? 0 : caching.hits()));

@@ -5,10 +5,15 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 
 namespace rondo::driver {
 
 void Print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+
+void PrintJson(const nlohmann::json& json) {
+  Print(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
 
 void PrintError(const std::string& text) {
   std::fflush(stdout);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "diag/diagnostic.h"
@@ -9,6 +10,8 @@ namespace rondo::driver {
 
 /// Writes text to standard output. A reader that went away is not an error.
 void Print(const std::string& text);
+/// Writes JSON, indented, to standard output. Bytes that are no UTF-8 become U+FFFD.
+void PrintJson(const nlohmann::json& json);
 /// Writes text to standard error, after what is already on its way to standard output.
 void PrintError(const std::string& text);
 

@@ -1,7 +1,8 @@
 #include "expr/arena.h"
 
-#include <utility>
 #include <fmt/format.h>
+
+#include <utility>
 
 #include "base/check.h"
 
@@ -92,7 +93,8 @@ const Rational& Arena::number(TermId id) const {
 
 size_t Arena::Hash::operator()(TermId id) const {
   const Term& t = arena->term(id);
-  size_t h = static_cast<size_t>(t.op) * 0x9E3779B97F4A7C15u ^ (t.sort.value * 0x85EBCA6Bu) ^ t.payload;
+  size_t h =
+      static_cast<size_t>(t.op) * 0x9E3779B97F4A7C15u ^ (uint64_t{t.sort.value} * 0x85EBCA6Bu) ^ t.payload;
   for (const TermId arg : arena->args(id)) h = (h ^ arg.value) * 0x100000001B3u;
   return h;
 }
@@ -174,9 +176,9 @@ TermId Arena::Rebuild(const Term& like, std::vector<TermId> args) {
     case Op::kNot:
       return Not(args[0]);
     case Op::kAnd:
-      return And(std::move(args));
+      return And(args);
     case Op::kOr:
-      return Or(std::move(args));
+      return Or(args);
     case Op::kEq:
       return Eq(args[0], args[1]);
     case Op::kIte:
@@ -185,7 +187,7 @@ TermId Arena::Rebuild(const Term& like, std::vector<TermId> args) {
     case Op::kExists: {
       const TermId body = args.back();
       args.pop_back();
-      return Quantify(like.op, std::move(args), body);
+      return Quantify(like.op, args, body);
     }
     case Op::kAdd:
       return Add(std::move(args));

@@ -87,16 +87,16 @@ class Arena {
 
   // -- logic
   TermId Not(TermId a);
-  TermId And(std::vector<TermId> args);
+  TermId And(const std::vector<TermId>& args);
   TermId And(TermId a, TermId b) { return And(std::vector<TermId>{a, b}); }
-  TermId Or(std::vector<TermId> args);
+  TermId Or(const std::vector<TermId>& args);
   TermId Or(TermId a, TermId b) { return Or(std::vector<TermId>{a, b}); }
   TermId Implies(TermId a, TermId b) { return Or(Not(a), b); }
   TermId Eq(TermId a, TermId b);
   TermId Ite(TermId condition, TermId then, TermId otherwise);
   /// `variables` come from FreshBound and belong to this quantifier alone.
-  TermId Forall(std::vector<TermId> variables, TermId body);
-  TermId Exists(std::vector<TermId> variables, TermId body);
+  TermId Forall(const std::vector<TermId>& variables, TermId body);
+  TermId Exists(const std::vector<TermId>& variables, TermId body);
 
   // -- arithmetic; both sides of a binary operation have the same sort
   TermId Add(std::vector<TermId> args);
@@ -160,8 +160,8 @@ class Arena {
   bool HasFreeBound(TermId id, std::span<const TermId> own) const;
   TermId Intern(Op op, SortId sort, uint32_t payload, std::span<const TermId> args);
   TermId Fire(Rewrite rewrite, Op op, SortId sort, uint32_t payload, std::vector<TermId> args, TermId result);
-  TermId Junction(Op op, std::vector<TermId> args);
-  TermId Quantify(Op op, std::vector<TermId> variables, TermId body);
+  TermId Junction(Op op, const std::vector<TermId>& args);
+  TermId Quantify(Op op, const std::vector<TermId>& variables, TermId body);
   TermId Compare(Op op, TermId a, TermId b);
   /// a - b if that is a number whatever the variables are.
   std::optional<Rational> ConstantDistance(TermId a, TermId b) const;

@@ -68,7 +68,7 @@ TermId AxiomOfLiteral(Arena& arena, TermId t) {
     const TermId at = arena.Raw(Op::kListAt, element, 0, {t, arena.IntNumber(static_cast<int64_t>(i))});
     facts.push_back(arena.Raw(Op::kEq, arena.Bool(), 0, {at, items[i]}));
   }
-  return arena.And(std::move(facts));
+  return arena.And(facts);
 }
 
 // Lists with equal items are equal: for the two sides of an equation.

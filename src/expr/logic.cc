@@ -43,10 +43,10 @@ TermId Arena::Not(TermId a) {
   }
 }
 
-TermId Arena::And(std::vector<TermId> args) { return Junction(Op::kAnd, std::move(args)); }
-TermId Arena::Or(std::vector<TermId> args) { return Junction(Op::kOr, std::move(args)); }
+TermId Arena::And(const std::vector<TermId>& args) { return Junction(Op::kAnd, args); }
+TermId Arena::Or(const std::vector<TermId>& args) { return Junction(Op::kOr, args); }
 
-TermId Arena::Junction(Op op, std::vector<TermId> args) {
+TermId Arena::Junction(Op op, const std::vector<TermId>& args) {
   const TermId neutral = op == Op::kAnd ? true_ : false_;
   const TermId zero = op == Op::kAnd ? false_ : true_;
   std::vector<TermId> flat;
@@ -113,7 +113,7 @@ TermId Arena::Eq(TermId a, TermId b) {
   if (op(a) == Op::kRecord && op(b) == Op::kRecord) {
     std::vector<TermId> fields;
     for (size_t i = 0; i < args(a).size(); ++i) fields.push_back(Eq(arg(a, i), arg(b, i)));
-    return fire(Rewrite::kEqRecords, And(std::move(fields)));
+    return fire(Rewrite::kEqRecords, And(fields));
   }
   if (sort_of(a) == int_ || sort_of(a) == real_) {
     if (const auto distance = ConstantDistance(a, b))
@@ -141,14 +141,14 @@ TermId Arena::Ite(TermId c, TermId a, TermId b) {
   return Intern(Op::kIte, s, 0, std::vector{c, a, b});
 }
 
-TermId Arena::Forall(std::vector<TermId> variables, TermId body) {
-  return Quantify(Op::kForall, std::move(variables), body);
+TermId Arena::Forall(const std::vector<TermId>& variables, TermId body) {
+  return Quantify(Op::kForall, variables, body);
 }
-TermId Arena::Exists(std::vector<TermId> variables, TermId body) {
-  return Quantify(Op::kExists, std::move(variables), body);
+TermId Arena::Exists(const std::vector<TermId>& variables, TermId body) {
+  return Quantify(Op::kExists, variables, body);
 }
 
-TermId Arena::Quantify(Op op, std::vector<TermId> variables, TermId body) {
+TermId Arena::Quantify(Op op, const std::vector<TermId>& variables, TermId body) {
   CHECK(sort_of(body) == bool_);
   for (const TermId v : variables) CHECK(this->op(v) == Op::kVariable && symbol(symbol_of(v)).bound);
   std::vector<TermId> all = variables;

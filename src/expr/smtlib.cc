@@ -132,7 +132,7 @@ class Declarations {
       Function(Quote(symbol.name), symbol.parameters, symbol.result);
     }
     const auto args = arena_.args(t);
-    const auto list_function = [&](SortId list, std::vector<SortId> parameters, SortId result) {
+    const auto list_function = [&](SortId list, const std::vector<SortId>& parameters, SortId result) {
       const std::string name = ListFunctionName(arena_, term.op, list, args.size());
       if (symbols_.insert(name).second) Function(Quote(name), parameters, result);
     };

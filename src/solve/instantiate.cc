@@ -95,7 +95,7 @@ class Engine {
       case Op::kOr: {
         std::vector<TermId> parts;
         for (const TermId arg : args) parts.push_back(Strip(arg, polarity, group));
-        return arena_.op(formula) == Op::kAnd ? arena_.And(std::move(parts)) : arena_.Or(std::move(parts));
+        return arena_.op(formula) == Op::kAnd ? arena_.And(parts) : arena_.Or(parts);
       }
       case Op::kForall:
       case Op::kExists: {

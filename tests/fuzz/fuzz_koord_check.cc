@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   koord::Program program;
   const diag::FileId file = sources.Add("input", std::string(reinterpret_cast<const char*>(data), size));
   koord::Parse(sources, file, program, diagnostics);
-  koord::Check(sources, program, diagnostics);
+  koord::Check(program, diagnostics);
   size_t length = 0;
   for (const diag::Diagnostic& d : diagnostics.Sorted())
     length += diag::RenderText(sources, d, diag::Colour::kOff).size();

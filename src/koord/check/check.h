@@ -6,7 +6,7 @@
 namespace rondo::koord {
 
 /// Resolves names and types and applies every static rule, reporting all violations. The model is usable for
-/// proving only if no error was reported. `sources` gives the texts for messages.
-Model Check(const diag::SourceSet& sources, const Program& program, diag::Diagnostics& diagnostics);
+/// proving only if no error was reported.
+Model Check(const Program& program, diag::Diagnostics& diagnostics);
 
 }  // namespace rondo::koord

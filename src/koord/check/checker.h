@@ -10,8 +10,8 @@ namespace rondo::koord {
 /// statements, specifications.
 class Checker {
  public:
-  Checker(const diag::SourceSet& sources, const Program& program, diag::Diagnostics& diagnostics)
-      : sources_(sources), program_(program), exprs_(program.exprs), diagnostics_(diagnostics) {}
+  Checker(const Program& program, diag::Diagnostics& diagnostics)
+      : program_(program), exprs_(program.exprs), diagnostics_(diagnostics) {}
   Model Run();
 
  private:
@@ -89,7 +89,6 @@ class Checker {
   /// Reports each name in `e` that this kind of specification must not mention.
   void RestrictScope(ExprId e, const AssumeDef* port, std::string_view what);
 
-  const diag::SourceSet& sources_;
   const Program& program_;
   const lang::ExprPool& exprs_;
   diag::Diagnostics& diagnostics_;

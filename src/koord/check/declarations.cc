@@ -9,10 +9,9 @@ namespace rondo::koord {
 
 using diag::Kind;
 using diag::Span;
-using lang::TypeKind;
 
-Model Check(const diag::SourceSet& sources, const Program& program, diag::Diagnostics& diagnostics) {
-  return Checker(sources, program, diagnostics).Run();
+Model Check(const Program& program, diag::Diagnostics& diagnostics) {
+  return Checker(program, diagnostics).Run();
 }
 
 Model Checker::Run() {

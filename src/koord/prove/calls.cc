@@ -1,5 +1,6 @@
-#include <utility>
 #include <fmt/format.h>
+
+#include <utility>
 
 #include "base/check.h"
 #include "koord/prove/executor.h"
@@ -7,7 +8,6 @@
 namespace rondo::koord {
 
 using expr::Rational;
-using lang::ExprKind;
 
 TermId Executor::Call(ExprId id, const lang::Expr& e) {
   const Ref ref = model_.RefOf(id);

@@ -56,7 +56,7 @@ TermId Executor::Reached() const {
   std::vector<TermId> parts = conditions_;
   parts.push_back(frame_.state->path);
   parts.push_back(Live());
-  return arena_.And(std::move(parts));
+  return arena_.And(parts);
 }
 
 void Executor::Check(CheckKind kind, diag::Span span, TermId holds) {
@@ -264,11 +264,7 @@ TermId Executor::Arithmetic(const lang::Expr& e) {
   }
   if (arena_.sort(arena_.sort_of(a)).kind == expr::SortKind::kOpaque ||
       arena_.sort(arena_.sort_of(b)).kind == expr::SortKind::kOpaque) {
-    // Strings: what `+` makes of them does not matter to any proof, only that it is a function.
-    const SortId string = vocabulary_.SortOf(model_.types.string());
-    const std::string name =
-        fmt::format("concat {} {}", arena_.sort(arena_.sort_of(a)).name, arena_.sort(arena_.sort_of(b)).name);
-    return arena_.Apply(arena_.Declare(name, {arena_.sort_of(a), arena_.sort_of(b)}, string), {a, b});
+    return Concatenate(a, b);
   }
   a = As(a, arena_.sort_of(b));
   b = As(b, arena_.sort_of(a));
@@ -280,6 +276,13 @@ TermId Executor::Arithmetic(const lang::Expr& e) {
         arena_.Not(arena_.Eq(b, arena_.Number(sort, Rational(0)))));
   if (e.text == "%") return arena_.Mod(a, b);
   return sort == arena_.Int() ? arena_.IntDiv(a, b) : arena_.Divide(a, b);
+}
+
+TermId Executor::Concatenate(TermId a, TermId b) {
+  const SortId left = arena_.sort_of(a);
+  const SortId right = arena_.sort_of(b);
+  const std::string name = fmt::format("concat {} {}", arena_.sort(left).name, arena_.sort(right).name);
+  return arena_.Apply(arena_.Declare(name, {left, right}, vocabulary_.SortOf(model_.types.string())), {a, b});
 }
 
 TermId Executor::Membership(const lang::Expr& e) {
@@ -294,7 +297,7 @@ TermId Executor::Membership(const lang::Expr& e) {
       parts.push_back(arena_.Le(arena_.Field(low, i), arena_.Field(a, i)));
       parts.push_back(arena_.Le(arena_.Field(a, i), arena_.Field(high, i)));
     }
-    return arena_.And(std::move(parts));
+    return arena_.And(parts);
   }
   if (set.kind == ExprKind::kName && ref.kind == RefKind::kNone) return vocabulary_.IsRobot(a);  // ID
   const TermId list = Eval(e.args[1]);

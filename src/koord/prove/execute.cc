@@ -112,11 +112,7 @@ void Executor::Execute(const Stmt& stmt) {
           parts.push_back(arena_.Add(arena_.Field(old, i), arena_.Field(more, i)));
         return Assign(stmt.target, arena_.MakeRecord(arena_.sort_of(old), std::move(parts)));
       }
-      const SortId sort = arena_.sort_of(old);
-      const std::string name =
-          fmt::format("concat {} {}", arena_.sort(sort).name, arena_.sort(arena_.sort_of(more)).name);
-      return Assign(stmt.target,
-                    arena_.Apply(arena_.Declare(name, {sort, arena_.sort_of(more)}, sort), {old, more}));
+      return Assign(stmt.target, Concatenate(old, more));
     }
     case StmtKind::kCall:
       return Method(stmt);

@@ -106,6 +106,8 @@ class Executor {
   TermId Binary(const lang::Expr& e);
   TermId Arithmetic(const lang::Expr& e);
   TermId Membership(const lang::Expr& e);
+  /// What `+` makes of strings does not matter to any proof, only that it is a function.
+  TermId Concatenate(TermId a, TermId b);
   TermId Quantifier(ExprId id, const lang::Expr& e);
   TermId ReadVariable(size_t variable);
   TermId ReadCell(size_t variable, TermId robot, ExprId at);

@@ -55,7 +55,7 @@ TermId Problems::Refute(TermId goal) {
       std::vector<TermId> parts;
       for (const TermId part : std::vector<TermId>(arena_.args(goal).begin(), arena_.args(goal).end()))
         parts.push_back(Refute(part));
-      return conjunction ? arena_.Or(std::move(parts)) : arena_.And(std::move(parts));
+      return conjunction ? arena_.Or(parts) : arena_.And(parts);
     }
     default:
       return arena_.Not(goal);  // nothing universal is in sight
@@ -69,6 +69,12 @@ const std::vector<Assertion>& Problems::Everything(const View& view) {
     Append(result, theory_.PortFacts(view));
   }
   return result;
+}
+
+solve::Query Problem::Whole() const {
+  solve::Query whole = query;
+  if (!complete) whole.assertions.insert(whole.assertions.end(), assertions.begin(), assertions.end());
+  return whole;
 }
 
 Problem Problems::Ground(std::vector<Assertion> assertions, std::vector<TermId> participants) {
@@ -128,10 +134,10 @@ TermId Problems::First(size_t action, const std::vector<TermId>& participants) {
     somebody.push_back(round_.Acts(r, action));
     std::vector<TermId> allowed{round_.Acts(r, 0)};
     for (size_t a = action; action > 0 && a < columns(); ++a) allowed.push_back(round_.Acts(r, a));
-    facts.push_back(arena_.Or(std::move(allowed)));
+    facts.push_back(arena_.Or(allowed));
   }
-  if (action > 0) facts.push_back(arena_.Or(std::move(somebody)));
-  return arena_.And(std::move(facts));
+  if (action > 0) facts.push_back(arena_.Or(somebody));
+  return arena_.And(facts);
 }
 
 // No operation fails in what the participants do: a counterexample is a round that can be completed.
@@ -144,7 +150,7 @@ TermId Problems::Succeeds(const std::vector<TermId>& participants) {
       }
     }
   }
-  return arena_.And(std::move(facts));
+  return arena_.And(facts);
 }
 
 Problem Problems::Step(size_t invariant, std::optional<size_t> action, bool reachable) {
@@ -186,7 +192,7 @@ Problem Problems::Defined(size_t action) {
   std::vector<TermId> undefined;
   for (const DefinednessCheck& check : ChecksOf(action))
     undefined.push_back(arena_.And(check.reached, Refute(check.holds)));
-  return Undefined(action, arena_.Or(std::move(undefined)), robot_);
+  return Undefined(action, arena_.Or(undefined), robot_);
 }
 
 Problem Problems::DefinedAt(size_t action, size_t check, int64_t robot) {

@@ -16,6 +16,9 @@ struct Problem {
   bool complete = false;                     ///< nothing was lost on the way: satisfiable means satisfiable
   std::vector<TermId> participants;
   std::unordered_set<TermId> lists;  ///< whose axioms are among the assertions
+
+  /// The query, and whatever its instances do not cover: what satisfies it satisfies the problem.
+  solve::Query Whole() const;
 };
 
 /// States the proof obligations of docs/theory.md for one program and one number of robots: any (symbolic),

@@ -19,9 +19,8 @@ using Clock = std::chrono::steady_clock;
 
 class Prover {
  public:
-  Prover(const diag::SourceSet& sources, const Model& model, const ProveOptions& options,
-         diag::Diagnostics& diagnostics)
-      : sources_(sources), model_(model), options_(options), diagnostics_(diagnostics) {}
+  Prover(const Model& model, const ProveOptions& options, diag::Diagnostics& diagnostics)
+      : model_(model), options_(options), diagnostics_(diagnostics) {}
 
   Report Run() {
     const size_t errors = diagnostics_.errors();
@@ -51,7 +50,7 @@ class Prover {
     Solve(rest, Effort::kMost);
     report_.interrupted = options_.stop.cancelled();
     MakeRows(problems);
-    Reporter reporter(sources_, model_, options_, problems, diagnostics_, report_, witnesses_);
+    Reporter reporter(model_, options_, problems, diagnostics_, report_, witnesses_);
     for (Task& task : tasks_) Sanity(task, problems, reporter);
     reporter.Failures();
     Conclude(problems, reporter);
@@ -313,7 +312,6 @@ class Prover {
     report_.unconstrained = problems.theory().Unconstrained();
   }
 
-  const diag::SourceSet& sources_;
   const Model& model_;
   const ProveOptions& options_;
   diag::Diagnostics& diagnostics_;
@@ -337,9 +335,8 @@ bool Report::AnyFailed() const {
          });
 }
 
-Report Prove(const diag::SourceSet& sources, const Model& model, const ProveOptions& options,
-             diag::Diagnostics& diagnostics) {
-  return Prover(sources, model, options, diagnostics).Run();
+Report Prove(const Model& model, const ProveOptions& options, diag::Diagnostics& diagnostics) {
+  return Prover(model, options, diagnostics).Run();
 }
 
 }  // namespace rondo::koord

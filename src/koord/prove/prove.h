@@ -73,7 +73,6 @@ struct Report {
 
 /// Proves the invariants of a program that passed the checker. Failures, contradictions, unused assumptions
 /// and what could not be decided are reported as diagnostics as well.
-Report Prove(const diag::SourceSet& sources, const Model& model, const ProveOptions& options,
-             diag::Diagnostics& diagnostics);
+Report Prove(const Model& model, const ProveOptions& options, diag::Diagnostics& diagnostics);
 
 }  // namespace rondo::koord

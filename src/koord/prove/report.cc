@@ -10,6 +10,26 @@ namespace rondo::koord {
 using diag::Kind;
 using diag::Span;
 
+namespace {
+
+const char* Describe(CheckKind kind) {
+  switch (kind) {
+    case CheckKind::kIndex:
+      return "this index can be out of range";
+    case CheckKind::kDivision:
+      return "this divisor can be zero";
+    case CheckKind::kRemove:
+      return "the item to remove may not be in the list";
+    case CheckKind::kUnrolling:
+      return "the list can be longer than its stated bound";
+    case CheckKind::kReturn:
+      return "this function can end without a value";
+  }
+  return "";
+}
+
+}  // namespace
+
 Span Reporter::SpanOf(const std::string& name) const {
   for (const AssumeDef* def : model_.assumptions) {
     if (problems_.theory().NameOf(*def) == name) return def->span;
@@ -58,11 +78,9 @@ void Reporter::Unrealisable(size_t p) {
     diag::Diagnostics ignored;
     Problems small(arena, model_, {n, true}, ignored);
     const Problem problem = small.PromiseNow(p);
-    solve::Query query = problem.query;
-    if (!problem.complete)
-      query.assertions.insert(query.assertions.end(), problem.assertions.begin(), problem.assertions.end());
     const solve::Budget budget{std::chrono::milliseconds(1000), false};
-    if (!std::holds_alternative<solve::Sat>(options_.solver->Check(query, budget, options_.stop))) continue;
+    if (!std::holds_alternative<solve::Sat>(options_.solver->Check(problem.Whole(), budget, options_.stop)))
+      continue;
     const Theory::Promise promise = problems_.promises()[p];
     diagnostics_
         .Report(Kind::kKoordUnrealisable, promise.def->span,
@@ -174,35 +192,13 @@ void Reporter::FailedDefinedness(Cell& cell, size_t action) {
     const std::vector<DefinednessCheck> checks = small.ChecksOf(action);
     for (size_t c = 0; c < checks.size(); ++c) {
       for (int64_t r = 0; r < n; ++r) {
-        Problem problem = small.DefinedAt(action, c, r);
-        solve::Query query = problem.query;
-        if (!problem.complete)
-          query.assertions.insert(query.assertions.end(), problem.assertions.begin(),
-                                  problem.assertions.end());
+        const solve::Query query = small.DefinedAt(action, c, r).Whole();
         const solve::Budget budget{std::min(options_.timeout, std::chrono::milliseconds(2000)), false};
         if (!std::holds_alternative<solve::Sat>(options_.solver->Check(query, budget, options_.stop)))
           continue;
         row.verdict = Verdict::kNotInductive;
         cell.outcome = Outcome::kFailed;
-        const char* what = "";
-        switch (checks[c].kind) {
-          case CheckKind::kIndex:
-            what = "this index can be out of range";
-            break;
-          case CheckKind::kDivision:
-            what = "this divisor can be zero";
-            break;
-          case CheckKind::kRemove:
-            what = "the item to remove may not be in the list";
-            break;
-          case CheckKind::kUnrolling:
-            what = "the list can be longer than its stated bound";
-            break;
-          case CheckKind::kReturn:
-            what = "this function can end without a value";
-            break;
-        }
-        diagnostics_.Report(Kind::kKoordUndefinedOperation, checks[c].span, what)
+        diagnostics_.Report(Kind::kKoordUndefinedOperation, checks[c].span, Describe(checks[c].kind))
             .Under(fmt::format("for robot {} of {}, in a state that satisfies every invariant", r, n))
             .Help("guard the operation, or add an invariant that excludes the state");
         return;

@@ -9,11 +9,9 @@ namespace rondo::koord {
 /// Turns what the solver said into verdicts and diagnostics that a robotics engineer can act on.
 class Reporter {
  public:
-  Reporter(const diag::SourceSet& sources, const Model& model, const ProveOptions& options,
-           Problems& problems, diag::Diagnostics& diagnostics, Report& report,
-           const std::map<size_t, Witness>& witnesses)
-      : sources_(sources),
-        model_(model),
+  Reporter(const Model& model, const ProveOptions& options, Problems& problems,
+           diag::Diagnostics& diagnostics, Report& report, const std::map<size_t, Witness>& witnesses)
+      : model_(model),
         options_(options),
         problems_(problems),
         diagnostics_(diagnostics),
@@ -39,7 +37,6 @@ class Reporter {
   size_t ActionOf(const std::string& column) const;
   std::string Scope() const;
 
-  const diag::SourceSet& sources_;
   const Model& model_;
   const ProveOptions& options_;
   Problems& problems_;

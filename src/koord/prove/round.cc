@@ -113,7 +113,7 @@ TermId Round::Wrote(TermId robot, const LastWriter& last) {
               w.index.valid() && last.cell.valid() ? arena_.Eq(w.index, last.cell) : arena_.True();
           any.push_back(arena_.And(w.condition, here));
         }
-        return arena_.Or(std::move(any));
+        return arena_.Or(any);
       },
       arena_.False());
 }
@@ -151,7 +151,7 @@ TermId Round::StateOf(TermId r) {
         arena_.Eq(arena_.Select(end_.stopped, r),
                   arena_.Or(stopped, ByAction(
                                          r, [](const Effect& e) { return e.stops; }, arena_.False()))));
-  return arena_.And(std::move(facts));
+  return arena_.And(facts);
 }
 
 // An urgent event that is enabled must be run, instead of any other, before the environment moves. A robot
@@ -168,7 +168,7 @@ TermId Round::Urgency(TermId r) {
       if (!model_.events[a - 1]->urgent) facts.push_back(arena_.Or(arena_.Not(Acts(r, a)), waits));
     }
   }
-  return arena_.And(std::move(facts));
+  return arena_.And(facts);
 }
 
 // At most one robot holds the lock of an event.
@@ -187,7 +187,7 @@ TermId Round::Locks() {
       }
     }
   }
-  return arena_.And(std::move(facts));
+  return arena_.And(facts);
 }
 
 // The variable has the value of its last writer, or is unchanged if nobody wrote.
@@ -203,7 +203,7 @@ TermId Round::WriterOf(const LastWriter& last) {
     const TermId before = arena_.Or(arena_.Eq(r, last.robot), arena_.Lt(turn(r), turn(last.robot)));
     facts.push_back(arena_.Implies(Wrote(r, last), arena_.And(wrote, before)));
   }
-  return arena_.And(std::move(facts));
+  return arena_.And(facts);
 }
 
 std::vector<solve::Assertion> Round::Relate(TermId goal, const std::vector<TermId>& everyone) {

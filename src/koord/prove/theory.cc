@@ -18,7 +18,7 @@ TermId Theory::ForEachRobot(const std::function<TermId(TermId)>& body) {
   if (executor_.expands_robots()) {
     std::vector<TermId> parts;
     for (int64_t r = 0; r < *vocabulary_.fixed_robots(); ++r) parts.push_back(body(arena_.IntNumber(r)));
-    return arena_.And(std::move(parts));
+    return arena_.And(parts);
   }
   const TermId robot = arena_.FreshBound("robot", arena_.Int());
   return arena_.Forall({robot}, arena_.Implies(vocabulary_.IsRobot(robot), body(robot)));
@@ -131,7 +131,7 @@ TermId Theory::NoResult(size_t index) {
     bindings[bound.back()] = result;
     wanted.push_back(executor_.Specification(def->body, parameters, {}, nullptr, bindings));
   }
-  return arena_.Forall({result}, arena_.Not(arena_.And(std::move(wanted))));
+  return arena_.Forall({result}, arena_.Not(arena_.And(wanted)));
 }
 
 std::vector<Assertion> Theory::Facts() {

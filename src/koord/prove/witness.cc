@@ -231,9 +231,12 @@ std::optional<Candidate> Confirm(const Problem& problem, std::vector<TermId> wan
   }
   if (!std::holds_alternative<solve::Sat>(answer)) return std::nullopt;
   if (complete) return Candidate{std::get<solve::Sat>(std::move(answer)), true};
-  // Some quantifiers were only instantiated: ask again with all of them.
-  query.assertions.insert(query.assertions.end(), problem.assertions.begin(), problem.assertions.end());
-  solve::Answer whole = solver.Check(query, budget, stop);
+  // Some quantifiers were only instantiated: ask again with all of them, for numbers as small.
+  solve::Query complete_query = problem.Whole();
+  complete_query.wanted = query.wanted;
+  complete_query.assertions.insert(complete_query.assertions.end(), query.assertions.begin() + without,
+                                   query.assertions.end());
+  solve::Answer whole = solver.Check(complete_query, budget, stop);
   if (std::holds_alternative<solve::Unsat>(whole)) return std::nullopt;
   const bool confirmed = std::holds_alternative<solve::Sat>(whole);
   return Candidate{std::get<solve::Sat>(std::move(confirmed ? whole : answer)), confirmed};

@@ -2,7 +2,6 @@
 
 namespace rondo::koord {
 
-using diag::Kind;
 using lang::TokenKind;
 
 // On the same line, or one to a line in a block.

@@ -3,7 +3,6 @@
 namespace rondo::koord {
 
 using diag::Kind;
-using diag::Span;
 using lang::TokenKind;
 
 bool Parser::AtCompound() const { return At("if") || At("for") || At("atomic"); }

@@ -65,7 +65,7 @@ const Translator::SortInfo& Translator::Sort(expr::SortId id) {
   const expr::Symbol& symbol = arena_.symbol(id);
   ::z3::sort_vector domain(context_);
   for (const expr::SortId p : symbol.parameters) domain.push_back(Sort(p).sort);
-  const ::z3::func_decl f = context_.function(symbol.name.c_str(), domain, Sort(symbol.result).sort);
+  ::z3::func_decl f = context_.function(symbol.name.c_str(), domain, Sort(symbol.result).sort);
   functions_.emplace(id, f);
   return f;
 }
