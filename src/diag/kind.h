@@ -19,6 +19,11 @@ enum class Kind : uint8_t {
   kSyntaxUnterminatedString,
   kSyntaxNumber,
   kSyntaxNesting,
+  // SMT-LIB scripts.
+  kSmtSyntax,
+  kSmtUndeclared,
+  kSmtSort,
+  kSmtUnsupported,
   // Koord: names.
   kKoordUndeclared,
   kKoordDuplicate,
@@ -70,7 +75,7 @@ struct KindInfo {
   std::string_view summary;  ///< one line
   std::string_view explanation;
   std::string_view example;  ///< a program for which exactly this kind is reported
-  std::string_view verb;     ///< the verb that reports it: `check` or `prove`
+  std::string_view verb;     ///< the verb that reports it: `check`, `prove` or `solve`
 };
 
 const KindInfo& Info(Kind kind);

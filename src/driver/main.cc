@@ -27,6 +27,7 @@ int Main(int argc, char** argv) {
   AddCheckVerb(app, status);
   AddFormatVerb(app, status);
   AddProveVerb(app, status);
+  AddSolveVerb(app, status);
   AddExplainVerb(app, status);
   AddAstVerb(app, status);
   AddCompletionVerb(app, status);

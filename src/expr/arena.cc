@@ -203,6 +203,8 @@ TermId Arena::Rebuild(const Term& like, std::vector<TermId> args) {
       return Le(args[0], args[1]);
     case Op::kLt:
       return Lt(args[0], args[1]);
+    case Op::kElementary:
+      return Apply(static_cast<Elementary>(like.payload), std::move(args));
     case Op::kToReal:
       return ToReal(args[0]);
     case Op::kSelect:

@@ -110,6 +110,7 @@ class Arena {
   TermId Le(TermId a, TermId b);
   TermId Lt(TermId a, TermId b);
   TermId ToReal(TermId a);
+  TermId Apply(Elementary function, std::vector<TermId> args);  ///< of reals; see Elementary for arities
 
   // -- functions, arrays, records, lists
   TermId Apply(SymbolId function, std::vector<TermId> args);
@@ -132,6 +133,7 @@ class Arena {
   std::span<const TermId> args(TermId id) const;
   TermId arg(TermId id, size_t i) const { return args(id)[i]; }
   const Rational& number(TermId id) const;
+  Elementary elementary_of(TermId id) const { return static_cast<Elementary>(terms_[id.index()].payload); }
   SymbolId symbol_of(TermId id) const { return SymbolId(terms_[id.index()].payload); }
   bool IsNumber(TermId id) const { return op(id) == Op::kNumber; }
   /// Does a variable of a quantifier occur outside that quantifier? Such terms make no sense on their own.

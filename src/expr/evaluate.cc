@@ -2,6 +2,7 @@
 
 #include <unordered_map>
 
+#include "expr/elementary.h"
 #include "expr/substitute.h"
 
 namespace rondo::expr {
@@ -102,6 +103,15 @@ class Evaluator {
       case Op::kField:
         if (!Arg(t, 0)) return std::nullopt;
         return std::get<Value::Fields>(Arg(t, 0)->data)[term.payload];
+      case Op::kElementary: {
+        std::vector<Rational> numbers;
+        for (size_t i = 0; i < arena_.args(t).size(); ++i) {
+          if (!Arg(t, i)) return std::nullopt;
+          numbers.push_back(Arg(t, i)->AsNumber());
+        }
+        const auto value = ExactValue(static_cast<Elementary>(term.payload), numbers);
+        return value ? Maybe(Value{*value}) : std::nullopt;
+      }
       case Op::kForall:
       case Op::kExists:
       case Op::kStore:

@@ -44,6 +44,8 @@ std::string_view Name(Op op) {
       return "<";
     case Op::kToReal:
       return "to_real";
+    case Op::kElementary:
+      return "elementary";
     case Op::kSelect:
       return "select";
     case Op::kStore:
@@ -66,6 +68,46 @@ std::string_view Name(Op op) {
       return "set";
   }
   return "";
+}
+
+std::string_view Name(Elementary function) {
+  switch (function) {
+    case Elementary::kSqrt:
+      return "sqrt";
+    case Elementary::kAbs:
+      return "abs";
+    case Elementary::kMin:
+      return "min";
+    case Elementary::kMax:
+      return "max";
+    case Elementary::kSin:
+      return "sin";
+    case Elementary::kCos:
+      return "cos";
+    case Elementary::kTan:
+      return "tan";
+    case Elementary::kAsin:
+      return "asin";
+    case Elementary::kAcos:
+      return "acos";
+    case Elementary::kAtan:
+      return "atan";
+    case Elementary::kAtan2:
+      return "atan2";
+    case Elementary::kExp:
+      return "exp";
+    case Elementary::kLog:
+      return "log";
+    case Elementary::kCount_:
+      return "";
+  }
+  return "";
+}
+
+size_t Arity(Elementary function) {
+  const bool binary =
+      function == Elementary::kMin || function == Elementary::kMax || function == Elementary::kAtan2;
+  return binary ? 2 : 1;
 }
 
 std::string_view Name(Rewrite rewrite) {
@@ -126,6 +168,8 @@ std::string_view Name(Rewrite rewrite) {
       return "compare-distance";
     case Rewrite::kToRealConstant:
       return "to-real-constant";
+    case Rewrite::kElementaryConstant:
+      return "elementary-constant";
     case Rewrite::kSelectStore:
       return "select-store";
     case Rewrite::kStoreStore:

@@ -26,6 +26,7 @@ enum class Op : uint8_t {
   kLe,
   kLt,
   kToReal,
+  kElementary,  // payload: an Elementary function of reals
   kSelect,
   kStore,
   kRecord,
@@ -36,6 +37,25 @@ enum class Op : uint8_t {
   kListAppend,
   kListRemove,
   kListSet,
+};
+
+/// The functions of reals that have no exact arithmetic. min, max and atan2 have two arguments, the others
+/// one. A partial function has no value outside its domain: an atomic formula about it is false there.
+enum class Elementary : uint8_t {
+  kSqrt,
+  kAbs,
+  kMin,
+  kMax,
+  kSin,
+  kCos,
+  kTan,
+  kAsin,
+  kAcos,
+  kAtan,
+  kAtan2,
+  kExp,
+  kLog,
+  kCount_,
 };
 
 /// Every simplification that a constructor of `Arena` may apply.
@@ -68,17 +88,20 @@ enum class Rewrite : uint8_t {
   kModConstants,
   kCompareDistance,  // a <= a + 1  ->  true
   kToRealConstant,
-  kSelectStore,   // store(a, i, v)[j]  ->  if i = j then v else a[j]
-  kStoreStore,    // store(store(a, i, v), i, w)  ->  store(a, i, w)
-  kFieldRecord,   // (a, b).0  ->  a
-  kFieldIte,      // (if c then r else s).0  ->  if c then r.0 else s.0
-  kRecordFields,  // (r.0, r.1)  ->  r
+  kElementaryConstant,  // sqrt 4  ->  2
+  kSelectStore,         // store(a, i, v)[j]  ->  if i = j then v else a[j]
+  kStoreStore,          // store(store(a, i, v), i, w)  ->  store(a, i, w)
+  kFieldRecord,         // (a, b).0  ->  a
+  kFieldIte,            // (if c then r else s).0  ->  if c then r.0 else s.0
+  kRecordFields,        // (r.0, r.1)  ->  r
   kLengthMake,
   kAtMake,
   kCount_,
 };
 
 std::string_view Name(Op op);
+std::string_view Name(Elementary function);
+size_t Arity(Elementary function);
 std::string_view Name(Rewrite rewrite);
 
 }  // namespace rondo::expr

@@ -3,6 +3,7 @@
 #include <gmpxx.h>
 
 #include <cctype>
+#include <cmath>
 
 #include "base/check.h"
 
@@ -119,6 +120,23 @@ Rational Rational::Floor() const {
   impl->value = mpq_class(quotient);
   return Rational(std::move(impl));
 }
+std::optional<Rational> Rational::ExactRoot() const {
+  const mpz_class& n = impl_->value.get_num();
+  const mpz_class& d = impl_->value.get_den();
+  if (n < 0 || mpz_perfect_square_p(n.get_mpz_t()) == 0 || mpz_perfect_square_p(d.get_mpz_t()) == 0)
+    return std::nullopt;
+  auto impl = std::make_unique<Impl>();
+  impl->value = mpq_class(sqrt(n), sqrt(d));
+  return Rational(std::move(impl));
+}
+
+Rational Rational::FromDouble(double value) {
+  CHECK(std::isfinite(value));
+  auto impl = std::make_unique<Impl>();
+  impl->value = mpq_class(value);
+  return Rational(std::move(impl));
+}
+
 double Rational::ToDouble() const { return impl_->value.get_d(); }
 size_t Rational::Hash() const { return std::hash<std::string>()(impl_->value.get_str()); }
 std::string Rational::Numerator() const { return impl_->value.get_num().get_str(); }

@@ -33,6 +33,10 @@ class Rational {
   bool IsZero() const;
   bool IsInteger() const;
   Rational Floor() const;
+  /// The square root, if it is rational.
+  std::optional<Rational> ExactRoot() const;
+  /// The exact value of a finite double.
+  static Rational FromDouble(double value);
   double ToDouble() const;
   size_t Hash() const;
   /// Numerator and denominator in decimal; the sign is the numerator's.

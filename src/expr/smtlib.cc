@@ -83,6 +83,19 @@ class Printer {
       case Op::kLe:
       case Op::kLt:
       case Op::kToReal:
+      case Op::kElementary: {
+        const auto function = static_cast<Elementary>(term.payload);
+        // These have no names in SMT-LIB that all solvers know.
+        const auto choose = [&](std::string_view relation, const std::string& a, const std::string& b) {
+          return fmt::format("(ite ({} {} {}) {} {})", relation, a, b, a, b);
+        };
+        const std::string first = Print(args[0]);
+        if (function == Elementary::kAbs)
+          return fmt::format("(ite (<= 0.0 {}) {} (- {}))", first, first, first);
+        if (function == Elementary::kMin) return choose("<=", first, Print(args[1]));
+        if (function == Elementary::kMax) return choose(">=", first, Print(args[1]));
+        return call(std::string(Name(function)));
+      }
       case Op::kSelect:
       case Op::kStore:
         return call(Name(term.op));

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -29,6 +30,9 @@ struct Query {
   std::vector<expr::TermId> wanted;
 };
 
+/// The assertions as an SMT-LIB 2 script, groups as comments.
+std::string ToSmtLib(const Query& query);
+
 /// No interpretation satisfies the assertions.
 struct Unsat {
   std::vector<std::string>
@@ -45,7 +49,13 @@ struct Unknown {
   std::string reason;
 };
 
-using Answer = std::variant<Unsat, Sat, Unknown>;
+/// Neither: a small box in which nothing could be excluded, and no solution was verified. Bounds of the
+/// variables.
+struct DeltaSat {
+  std::map<expr::TermId, std::pair<double, double>> box;
+};
+
+using Answer = std::variant<Unsat, Sat, DeltaSat, Unknown>;
 
 struct Budget {
   std::chrono::milliseconds time{10'000};

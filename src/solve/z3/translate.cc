@@ -139,6 +139,18 @@ const Translator::SortInfo& Translator::Sort(expr::SortId id) {
       return arg(0) < arg(1);
     case Op::kToReal:
       return ::z3::to_real(arg(0));
+    case Op::kElementary:
+      switch (static_cast<expr::Elementary>(term.payload)) {
+        case expr::Elementary::kAbs:
+          return ::z3::ite(arg(0) >= 0, arg(0), -arg(0));
+        case expr::Elementary::kMin:
+          return ::z3::ite(arg(0) <= arg(1), arg(0), arg(1));
+        case expr::Elementary::kMax:
+          return ::z3::ite(arg(0) >= arg(1), arg(0), arg(1));
+        default:
+          // Caught where other errors of Z3 are.
+          throw ::z3::exception("Z3 does not know this function of reals");
+      }
     case Op::kSelect:
       return ::z3::select(arg(0), arg(1));
     case Op::kStore:

@@ -1,0 +1,182 @@
+#include "driver/script_run.h"
+
+#include <fmt/format.h>
+
+#include "expr/evaluate.h"
+#include "expr/smtlib.h"
+
+namespace rondo::driver {
+namespace {
+
+using lang::smtlib::Command;
+using Clock = std::chrono::steady_clock;
+
+/// Boxes narrower than what the script asks for are tried before giving up: most questions that a wide box
+/// leaves open are decided in narrow ones.
+constexpr double kFinest = 1e-9;
+/// dReal's default.
+constexpr double kDefaultPrecision = 1e-3;
+
+class Runner {
+ public:
+  Runner(const lang::smtlib::Script& script, const ScriptOptions& options, const base::StopToken& stop)
+      : script_(script), options_(options), stop_(stop), levels_(1) {}
+
+  ScriptOutcome Run() {
+    for (const Command& command : script_.commands) {
+      if (stop_.StopRequested()) break;
+      One(command);
+    }
+    return std::move(outcome_);
+  }
+
+ private:
+  void One(const Command& command) {
+    switch (command.kind) {
+      case Command::Kind::kAssert:
+        levels_.back().push_back({command.terms[0], ""});
+        return;
+      case Command::Kind::kPush:
+        for (size_t i = 0; i < command.levels; ++i) levels_.emplace_back();
+        return;
+      case Command::Kind::kPop:
+        levels_.resize(levels_.size() - command.levels);
+        return;
+      case Command::Kind::kReset:
+        levels_.assign(1, {});
+        return;
+      case Command::Kind::kEcho:
+        outcome_.text += command.text + "\n";
+        return;
+      case Command::Kind::kCheckSat:
+        Check();
+        if (options_.want_model) PrintModel();
+        return;
+      case Command::Kind::kGetModel:
+        if (!options_.want_model) PrintModel();
+        return;
+      case Command::Kind::kGetValue:
+        PrintValues(command);
+        return;
+    }
+  }
+
+  double Precision() const {
+    if (options_.precision) return *options_.precision;
+    return script_.precision ? script_.precision->ToDouble() : kDefaultPrecision;
+  }
+
+  void Check() {
+    solve::Query query{&script_.arena, {}, script_.variables};
+    for (const auto& level : levels_)
+      query.assertions.insert(query.assertions.end(), level.begin(), level.end());
+    solve::Budget budget{options_.timeout, false};
+    const Clock::time_point start = Clock::now();
+    CheckOutcome check;
+    if (options_.only != nullptr) {
+      check.report.answer = options_.only->Check(query, budget, stop_);
+      check.report.outcomes.push_back(
+          {options_.only->name(), solve::portfolio::Describe(check.report.answer), 0});
+    } else {
+      solve::portfolio::Options portfolio;
+      portfolio.others = options_.portfolio;
+      portfolio.compare = options_.compare;
+      portfolio.icp.jobs = options_.jobs;
+      portfolio.icp.precision = std::min(kFinest, Precision());
+      check.report = solve::portfolio::PortfolioSolver(portfolio).Decide(query, budget, stop_);
+    }
+    check.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    Tell(check);
+    outcome_.checks.push_back(std::move(check));
+  }
+
+  void Tell(CheckOutcome& check) {
+    values_.clear();
+    const solve::Answer& answer = check.report.answer;
+    if (const auto* unknown = std::get_if<solve::Unknown>(&answer)) {
+      check.answer = "unknown";
+      check.reason = unknown->reason;
+      outcome_.text += fmt::format("unknown\n; {}\n", unknown->reason);
+      return;
+    }
+    check.answer = solve::portfolio::Describe(answer);
+    outcome_.text += check.answer + "\n";
+    if (const auto* sat = std::get_if<solve::Sat>(&answer)) {
+      values_ = sat->values;
+      for (const expr::TermId v : script_.variables) {
+        if (const auto it = values_.find(v); it != values_.end())
+          check.model.emplace_back(Name(v), expr::ToString(it->second));
+      }
+    }
+    if (const auto* delta = std::get_if<solve::DeltaSat>(&answer)) {
+      for (const auto& [variable, range] : delta->box)
+        outcome_.text += fmt::format("; {} in [{}, {}]\n", Name(variable), range.first, range.second);
+    }
+  }
+
+  std::string Name(expr::TermId v) const { return script_.arena.symbol(script_.arena.symbol_of(v)).name; }
+
+  void PrintModel() {
+    if (values_.empty()) return;
+    outcome_.text += "(\n";
+    for (const expr::TermId v : script_.variables) {
+      const auto it = values_.find(v);
+      if (it == values_.end()) continue;
+      outcome_.text += fmt::format("  (define-fun {} () {} {})\n", expr::ToSmtLib(script_.arena, v),
+                                   script_.arena.sort(script_.arena.sort_of(v)).name, Literal(it->second));
+    }
+    outcome_.text += ")\n";
+  }
+
+  static std::string Literal(const expr::Value& value) {
+    if (!value.IsNumber()) return expr::ToString(value);
+    const expr::Rational& r = value.AsNumber();
+    const bool negative = r < expr::Rational(0);
+    const expr::Rational size = negative ? expr::Rational(0) - r : r;
+    const std::string text =
+        size.IsInteger() ? size.Numerator() : fmt::format("(/ {} {})", size.Numerator(), size.Denominator());
+    return negative ? fmt::format("(- {})", text) : text;
+  }
+
+  void PrintValues(const Command& command) {
+    const expr::Valuation valuation = [&](expr::TermId t) -> std::optional<expr::Value> {
+      const auto it = values_.find(t);
+      return it == values_.end() ? std::nullopt : std::optional(it->second);
+    };
+    outcome_.text += "(";
+    for (size_t i = 0; i < command.terms.size(); ++i) {
+      const auto value = expr::Evaluate(script_.arena, command.terms[i], valuation);
+      outcome_.text +=
+          fmt::format("{}({} {})", i == 0 ? "" : "\n ", expr::ToSmtLib(script_.arena, command.terms[i]),
+                      value ? Literal(*value) : "?");
+    }
+    outcome_.text += ")\n";
+  }
+
+  const lang::smtlib::Script& script_;
+  const ScriptOptions& options_;
+  const base::StopToken& stop_;
+  std::vector<std::vector<solve::Assertion>> levels_;
+  std::map<expr::TermId, expr::Value> values_;
+  ScriptOutcome outcome_;
+};
+
+}  // namespace
+
+ScriptOutcome RunScript(const lang::smtlib::Script& script, const ScriptOptions& options,
+                        const base::StopToken& stop) {
+  return Runner(script, options, stop).Run();
+}
+
+std::string Prefixed(const std::string& text, const std::string& prefix) {
+  if (prefix.empty()) return text;
+  std::string result;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    result += prefix + text.substr(begin, end - begin) + "\n";
+    begin = end + 1;
+  }
+  return result;
+}
+
+}  // namespace rondo::driver

@@ -1,0 +1,182 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "driver/exit_status.h"
+#include "driver/interrupt.h"
+#include "driver/load.h"
+#include "driver/script_run.h"
+#include "driver/terminal.h"
+#include "driver/verbs.h"
+#include "solve/smtlib/smtlib_solver.h"
+#include "solve/z3/z3_solver.h"
+
+namespace rondo::driver {
+namespace {
+
+struct Options {
+  std::vector<std::string> files;
+  std::string solver = "auto";
+  unsigned jobs = 0;
+  double timeout = 60;
+  double precision = 0;
+  bool compare = false;
+  bool model = false;
+  bool stats = false;
+  bool json = false;
+};
+
+/// One script and what it printed.
+struct Item {
+  std::string path;
+  lang::smtlib::Script script;
+  ScriptOutcome outcome;
+};
+
+nlohmann::json ToJson(const Item& item) {
+  nlohmann::json answers = nlohmann::json::array();
+  for (const CheckOutcome& c : item.outcome.checks) {
+    nlohmann::json engines = nlohmann::json::array();
+    for (const auto& e : c.report.outcomes)
+      engines.push_back({{"engine", e.engine}, {"answer", e.answer}, {"seconds", e.seconds}});
+    nlohmann::json model = nlohmann::json::object();
+    for (const auto& [name, value] : c.model) model[name] = value;
+    answers.push_back({{"answer", c.answer},
+                       {"seconds", c.seconds},
+                       {"boxes", c.report.icp.boxes},
+                       {"cases", c.report.icp.cases},
+                       {"model", model},
+                       {"engines", engines}});
+    if (!c.reason.empty()) answers.back()["reason"] = c.reason;
+  }
+  return {{"file", item.path}, {"answers", answers}};
+}
+
+int StatusOf(const std::vector<Item>& items) {
+  int status = kEstablished;
+  for (const Item& item : items) {
+    for (const CheckOutcome& c : item.outcome.checks) {
+      if (c.report.disagreement) return kBug;
+      if (c.answer != "sat" && c.answer != "unsat") status = kUndecided;
+    }
+  }
+  return status;
+}
+
+int Run(const Options& options) {
+  Session session;
+  std::vector<Item> items(options.files.size());
+  bool readable = true;
+  for (size_t i = 0; i < items.size(); ++i) {
+    items[i].path = options.files[i];
+    auto text = base::ReadFile(options.files[i]);
+    if (!text.ok()) {
+      PrintFailure(fmt::format("cannot read `{}`: {}", options.files[i], text.error().message));
+      readable = false;
+      continue;
+    }
+    const diag::FileId file = session.sources.Add(options.files[i], std::move(text).value());
+    lang::smtlib::ReadScript(session.sources, file, items[i].script, session.diagnostics);
+  }
+  nlohmann::json diagnostics = nlohmann::json::array();
+  for (const diag::Diagnostic& d : session.diagnostics.Sorted())
+    diagnostics.push_back(diag::RenderJson(session.sources, d));
+  if (!readable || session.diagnostics.has_errors()) {
+    if (options.json) {
+      PrintJson({{"command", "solve"},
+                 {"ok", false},
+                 {"files", nlohmann::json::array()},
+                 {"diagnostics", diagnostics}});
+    } else {
+      PrintDiagnostics(session.sources, session.diagnostics);
+    }
+    return kRejected;
+  }
+
+  const solve::z3::Z3Solver z3;
+  const bool external = options.solver != "auto" && options.solver != "icp" && options.solver != "z3";
+  const solve::smtlib::SmtLibSolver process(external ? options.solver : "");
+  ScriptOptions run;
+  run.timeout = std::chrono::milliseconds(static_cast<int64_t>(options.timeout * 1000));
+  run.compare = options.compare;
+  run.want_model = options.model;
+  if (options.precision > 0) run.precision = options.precision;
+  if (options.solver == "auto") run.portfolio = {&z3};
+  if (options.solver == "z3") run.only = &z3;
+  if (external) run.only = &process;
+  // Many scripts: one thread each. One script: all threads for it.
+  const unsigned cores = options.jobs > 0 ? options.jobs : std::max(1u, std::thread::hardware_concurrency());
+  run.jobs = items.size() == 1 ? cores : 1;
+  {
+    ProgressLine line;
+    base::StopToken stop;
+    const InterruptScope interrupt(stop);
+    std::mutex mutex;
+    size_t done = 0;
+    base::ParallelFor(items.size(), items.size() == 1 ? 1 : cores, [&](size_t i) {
+      items[i].outcome = RunScript(items[i].script, run, stop);
+      const std::scoped_lock lock(mutex);
+      line.Show(fmt::format("[{}/{}] {}", ++done, items.size(), items[i].path));
+    });
+  }
+  const int status = StatusOf(items);
+  if (options.json) {
+    nlohmann::json files = nlohmann::json::array();
+    for (const Item& item : items) files.push_back(ToJson(item));
+    PrintJson({{"command", "solve"},
+               {"ok", status == kEstablished},
+               {"files", files},
+               {"diagnostics", diagnostics}});
+    return status;
+  }
+  for (const Item& item : items) {
+    const std::string prefix = items.size() > 1 ? item.path + ": " : "";
+    Print(Prefixed(item.outcome.text, prefix));
+    if (!options.stats) continue;
+    for (const CheckOutcome& c : item.outcome.checks) {
+      Print(fmt::format("{}; {:.3f} s, {} boxes in {} cases ({} decided exactly), {} variables, {} nodes\n",
+                        prefix, c.seconds, c.report.icp.boxes, c.report.icp.cases, c.report.icp.exact,
+                        c.report.icp.variables, c.report.icp.nodes));
+    }
+  }
+  return status;
+}
+
+}  // namespace
+
+void AddSolveVerb(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("solve", "decide SMT-LIB 2 scripts of nonlinear real arithmetic");
+  verb->add_option("FILE", options->files, "scripts, in the dialect of dReal")->required();
+  verb->add_option(
+      "--solver", options->solver,
+      "auto (interval arithmetic, then Z3 beside it), icp (interval arithmetic alone), z3, or a program "
+      "such as cvc5 or dreal; default: auto");
+  verb->add_option("--jobs", options->jobs, "threads; default: one for each core");
+  verb->add_option("--timeout", options->timeout, "seconds for each question; default: 60")
+      ->check(CLI::Range(0.001, 1e6));
+  verb->add_option("--precision", options->precision,
+                   "the widest box that may be answered with delta-sat; default: what the script says")
+      ->check(CLI::Range(1e-12, 1e3));
+  verb->add_flag("--compare", options->compare, "ask every engine and compare their answers");
+  verb->add_flag("--model", options->model, "print values of the variables after `sat`");
+  verb->add_flag("--stats", options->stats, "print what each question took");
+  verb->add_flag("--json", options->json, "the answers as JSON on standard output");
+  verb->footer(
+      "example: rondo solve --model --stats examples/smt/arm.smt2\n\n"
+      "answers: unsat (no solution, rigorously), sat (with a verified solution), delta-sat (a small box in "
+      "which\n"
+      "nothing could be excluded), unknown\n"
+      "exit status: 0 every question answered with sat or unsat, 1 wrong input, 3 something undecided, 4 "
+      "engines\n"
+      "contradict each other");
+  verb->callback([options, &status] { status = Run(*options); });
+}
+
+}  // namespace rondo::driver

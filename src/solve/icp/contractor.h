@@ -1,0 +1,70 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "interval/batch.h"
+#include "solve/icp/tape.h"
+
+namespace rondo::solve::icp {
+
+inline constexpr int kLanes = interval::kLanes;
+/// Lanes of a batch, as bits.
+using Lanes = uint8_t;
+
+/// Runs a tape over eight boxes at once: forward to enclose every number and to see which formulas are still
+/// possible, backward to remove what the formula excludes (HC4-revise over the shared graph, Benhamou et al.
+/// 1999, with formulas as nodes). Results lane by lane, whatever the other lanes hold.
+///
+/// Sound for partial functions: an atomic formula about an undefined term is false, so arguments are
+/// restricted to domains only where the formula must be true.
+class Contractor {
+ public:
+  Contractor(const Tape& tape, const interval::Kernels& kernels);
+
+  /// `box` holds the bounds (lower, upper) of each variable in turn.
+  void Load(int lane, const double* box);
+  void Store(int lane, double* box) const;
+
+  /// Contracts all lanes. Returns those that may still hold a solution.
+  Lanes Contract();
+  /// Encloses all values and says in which lanes the formula is possible. Contracts nothing.
+  Lanes Evaluate();
+  /// After Evaluate: lanes in which every atomic formula that matters is decided to be true, as far as
+  /// doubles can tell. A hint only: nothing rests on it.
+  Lanes LooksTrue() const;
+
+  /// After Contract: how much each variable can change the undecided comparisons, by lane: sums over them of
+  /// |derivative| * width, relative to the width of the compared term (after SmearSumRel, Trombettoni et al.
+  /// 2011). A heuristic: rounding is not controlled. `scores` holds kLanes numbers for each variable.
+  void Influence(std::vector<double>& scores);
+
+  interval::Interval ValueOf(uint32_t node, int lane) const {
+    return {-values_[node].nl[lane], values_[node].hi[lane]};
+  }
+
+ private:
+  struct Comparison {
+    Lanes less, equal, greater;  ///< what is possible
+  };
+
+  void ForwardNode(uint32_t i);
+  void Forward();
+  void Backward();
+  void BackwardNumber(uint32_t i);
+  void RequireThreshold(uint32_t i);
+  void RequireChoice(uint32_t i);
+  void Compare(uint32_t i);
+  Lanes Impossible() const;
+
+  const Tape& tape_;
+  const interval::Kernels& k_;
+  std::vector<interval::Batch> values_;  ///< by node; formulas leave theirs unused
+  std::vector<Lanes> possible_;          ///< formulas: not refuted
+  std::vector<Lanes> needed_;  ///< formulas: must be true; numbers: must exist for the formula to be true
+  std::vector<Comparison> comparisons_;
+  std::vector<double> adjoints_;
+  bool again_ = false;  ///< meet new enclosures with those of the sweep before
+};
+
+}  // namespace rondo::solve::icp

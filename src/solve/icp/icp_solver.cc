@@ -1,0 +1,206 @@
+#include "solve/icp/icp_solver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "expr/substitute.h"
+#include "solve/icp/contractor.h"
+#include "solve/icp/point.h"
+#include "solve/icp/search.h"
+
+namespace rondo::solve::icp {
+namespace {
+
+using expr::Op;
+
+/// Decides one lowered query by cases.
+class Decision {
+ public:
+  Decision(Lowered& lowered, const Options& options, const base::StopToken& stop, Statistics& statistics)
+      : lowered_(lowered), arena_(lowered.arena), options_(options), stop_(stop), statistics_(statistics) {
+    search_.jobs = options.jobs;
+    search_.precision = options.precision;
+    search_.stop = stop;
+    search_.kernels = options.kernels != nullptr ? options.kernels : &interval::BestKernels();
+  }
+
+  enum class Status : uint8_t { kUnsat, kSat, kUndecided, kGaveUp };
+
+  Status Run() { return Decide(lowered_.conjuncts, {}); }
+
+  const Assignment& model() const { return model_; }
+  const FlatBox& box() const { return box_; }
+  const std::vector<TermId>& box_variables() const { return box_variables_; }
+
+ private:
+  using Definitions = std::vector<std::pair<TermId, TermId>>;
+
+  Status Decide(std::vector<TermId> conjuncts, const Definitions& definitions) {
+    if (stop_.StopRequested()) return Status::kGaveUp;
+    const Prepared prepared = Prepare(arena_, lowered_.variables, std::move(conjuncts), definitions);
+    if (prepared.contradiction) {
+      ++statistics_.exact;
+      return Status::kUnsat;
+    }
+    const Tape tape = BuildTape(arena_, lowered_.variables, prepared);
+    statistics_.nodes = std::max(statistics_.nodes, tape.nodes.size());
+    statistics_.variables = std::max(statistics_.variables, tape.variables.size());
+    ++statistics_.cases;
+    search_.verify = [&](const std::vector<double>& point) { return Verify(prepared, tape, point); };
+    const bool split = !prepared.disjunctions.empty();
+    search_.max_boxes = split ? kBoxesBeforeCases : options_.max_boxes;
+    SearchResult result = Search(tape, search_);
+    statistics_.boxes += result.boxes;
+    switch (result.kind) {
+      case SearchResult::Kind::kEmpty:
+        return Status::kUnsat;
+      case SearchResult::Kind::kPoint:
+      case SearchResult::Kind::kBox:
+        return Status::kSat;
+      case SearchResult::Kind::kUndecided:
+      case SearchResult::Kind::kGaveUp:
+        break;
+    }
+    if (split) return Cases(prepared);
+    if (result.kind == SearchResult::Kind::kGaveUp) return Status::kGaveUp;
+    box_ = result.box;
+    box_variables_.clear();
+    for (const TapeVariable& v : tape.variables) box_variables_.push_back(v.term);
+    return Status::kUndecided;
+  }
+
+  // One of the alternatives of one disjunction must hold.
+  Status Cases(const Prepared& prepared) {
+    const auto smallest =
+        std::min_element(prepared.disjunctions.begin(), prepared.disjunctions.end(),
+                         [&](TermId a, TermId b) { return arena_.args(a).size() < arena_.args(b).size(); });
+    std::vector<TermId> rest = Conjuncts(arena_, prepared);
+    std::erase(rest, *smallest);
+    const auto args = arena_.args(*smallest);
+    const std::vector<TermId> alternatives(args.begin(), args.end());
+    Status status = Status::kUnsat;
+    for (const TermId alternative : alternatives) {
+      std::vector<TermId> conjuncts = rest;
+      conjuncts.push_back(alternative);
+      const Status s = Decide(std::move(conjuncts), prepared.definitions);
+      if (s == Status::kSat) return s;
+      if (s == Status::kGaveUp || status == Status::kUnsat) status = s;
+      if (s == Status::kGaveUp && stop_.StopRequested()) return s;
+    }
+    return status;
+  }
+
+  // Values that the search left open may be any.
+  bool Verify(const Prepared& prepared, const Tape& tape, const std::vector<double>& point) {
+    Assignment assignment;
+    for (const auto& [term, variable] : lowered_.variables) assignment.emplace(term, Rational(0));
+    // A variable that no comparison mentions any more still has its bounds.
+    for (const auto& [term, range] : prepared.ranges) {
+      if (!lowered_.variables.contains(term)) continue;
+      if (range.lo && range.hi) {
+        assignment[term] = (*range.lo + *range.hi) / Rational(2);
+      } else if (range.lo) {
+        assignment[term] = *range.lo + Rational(1);
+      } else if (range.hi) {
+        assignment[term] = *range.hi - Rational(1);
+      }
+    }
+    for (size_t v = 0; v < point.size(); ++v)
+      assignment[tape.variables[v].term] = Rational::FromDouble(point[v]);
+    PointChecker checker(arena_, assignment);
+    bool exact = true;
+    Assignment full = assignment;
+    for (const auto& [variable, definition] : prepared.definitions) {
+      const auto value = checker.Exact(definition);
+      exact = exact && value.has_value();
+      if (value) full[variable] = *value;
+    }
+    // The query itself, if all values are rational; else what was derived from it.
+    bool good = true;
+    if (exact) {
+      PointChecker original(arena_, full);
+      for (const TermId c : lowered_.conjuncts) good = good && original.Check(c) == Truth::kTrue;
+    } else {
+      for (const TermId c : Conjuncts(arena_, prepared)) good = good && checker.Check(c) == Truth::kTrue;
+    }
+    if (good) model_ = std::move(full);
+    return good;
+  }
+
+  static constexpr uint64_t kBoxesBeforeCases = 256;
+  Lowered& lowered_;
+  expr::Arena& arena_;
+  const Options& options_;
+  const base::StopToken& stop_;
+  Statistics& statistics_;
+  SearchOptions search_;
+  Assignment model_;
+  FlatBox box_;
+  std::vector<TermId> box_variables_;
+};
+
+Value ToValue(const Query& query, const Variable& variable, const Rational& number) {
+  switch (variable.kind) {
+    case Variable::Kind::kReal:
+    case Variable::Kind::kInt:
+      return Value{number};
+    case Variable::Kind::kBool:
+      return Value{number > Rational(0)};
+    case Variable::Kind::kEnum: {
+      const expr::Sort& sort = query.arena->sort(query.arena->sort_of(variable.source));
+      return Value{sort.names.at(static_cast<size_t>(number.ToDouble()))};
+    }
+  }
+  return Value{number};
+}
+
+}  // namespace
+
+Answer IcpSolver::Check(const Query& query, const Budget& budget, const base::StopToken& stop) const {
+  Statistics statistics;
+  return Check(query, budget, stop, statistics);
+}
+
+Answer IcpSolver::Check(const Query& query, const Budget& budget, const base::StopToken& stop,
+                        Statistics& statistics) const {
+  Lowered lowered;
+  Lower(query, lowered);
+  if (!lowered.unsupported.empty())
+    return Unknown{fmt::format("no interval arithmetic for {}", lowered.unsupported)};
+  const base::StopToken limited = stop.WithDeadline(base::StopToken::Clock::now() + budget.time);
+  Decision decision(lowered, options_, limited, statistics);
+  switch (decision.Run()) {
+    case Decision::Status::kUnsat: {
+      Unsat unsat;
+      for (const Assertion& a : query.assertions) {
+        if (!a.group.empty()) unsat.core.push_back(a.group);
+      }
+      std::sort(unsat.core.begin(), unsat.core.end());
+      unsat.core.erase(std::unique(unsat.core.begin(), unsat.core.end()), unsat.core.end());
+      return unsat;
+    }
+    case Decision::Status::kSat: {
+      Sat sat;
+      for (const auto& [term, number] : decision.model()) {
+        const Variable& variable = lowered.variables.at(term);
+        sat.values.emplace(variable.source, ToValue(query, variable, number));
+      }
+      return sat;
+    }
+    case Decision::Status::kUndecided: {
+      DeltaSat delta;
+      for (size_t v = 0; v < decision.box_variables().size(); ++v) {
+        delta.box.emplace(lowered.variables.at(decision.box_variables()[v]).source,
+                          std::pair(decision.box()[2 * v], decision.box()[2 * v + 1]));
+      }
+      return delta;
+    }
+    case Decision::Status::kGaveUp:
+      break;
+  }
+  if (stop.cancelled()) return Unknown{"interrupted"};
+  return Unknown{fmt::format("undecided after {} boxes", statistics.boxes)};
+}
+
+}  // namespace rondo::solve::icp

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <unordered_map>
+#include <vector>
+
+#include "expr/arena.h"
+#include "interval/interval.h"
+
+namespace rondo::solve::icp {
+
+using Assignment = std::unordered_map<expr::TermId, expr::Rational>;
+
+enum class Truth : uint8_t { kFalse, kTrue, kUndecided };
+
+/// Evaluates formulas at one point, rationally where that is possible and with intervals otherwise. Written
+/// for certainty, not for speed, and apart from the tape: what it calls true is true, everything in it being
+/// defined.
+class PointChecker {
+ public:
+  PointChecker(const expr::Arena& arena, const Assignment& point) : arena_(arena), point_(point) {}
+  Truth Check(expr::TermId formula);
+  /// The value of a term, if it is known exactly.
+  std::optional<expr::Rational> Exact(expr::TermId term);
+
+ private:
+  struct Value {
+    std::optional<expr::Rational> exact;
+    interval::Interval range;
+    bool defined = true;
+  };
+  const Value& Number(expr::TermId t);
+  Value NewNumber(expr::TermId t);
+  Truth Compare(expr::TermId atom, bool positive);
+
+  const expr::Arena& arena_;
+  const Assignment& point_;
+  std::unordered_map<expr::TermId, Value> values_;
+};
+
+}  // namespace rondo::solve::icp

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "solve/icp/literal.h"
+#include "solve/icp/lower.h"
+
+namespace rondo::solve::icp {
+
+/// What is known of one term: bounds and values that it does not have.
+struct Range {
+  std::optional<Rational> lo, hi;
+  bool lo_strict = false;
+  bool hi_strict = false;
+  std::vector<Rational> excluded;
+
+  /// Adds `relation bound`. Does not look for contradictions.
+  void Add(Relation relation, const Rational& bound);
+  bool IsContradiction() const;
+  /// The only value, if there is one.
+  std::optional<Rational> Only() const;
+  std::vector<Literal> Literals(TermId term) const;
+};
+
+/// A conjunction from which all that exact arithmetic can use has been used.
+struct Prepared {
+  bool contradiction = false;
+  std::map<TermId, Range> ranges;  ///< by the term of the literals: bounds of variables are among them
+  std::vector<TermId> disjunctions;
+  /// variable = term over the variables that are left.
+  std::vector<std::pair<TermId, TermId>> definitions;
+};
+
+/// Equivalent to the conjunction of `conjuncts`, up to the definitions: every solution of the result extends
+/// to one of the conjuncts by the definitions, and every solution of the conjuncts arises so. Uses linear
+/// equations to eliminate variables, turns bounds of square roots into bounds of their arguments, splits
+/// vanishing sums of squares, and merges all comparisons of one term; everything in exact arithmetic.
+Prepared Prepare(expr::Arena& arena, const std::unordered_map<TermId, Variable>& variables,
+                 std::vector<TermId> conjuncts, std::vector<std::pair<TermId, TermId>> definitions);
+
+/// Everything in `prepared` as formulas.
+std::vector<TermId> Conjuncts(expr::Arena& arena, const Prepared& prepared);
+
+}  // namespace rondo::solve::icp

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "base/stop.h"
+#include "interval/batch.h"
+#include "solve/icp/tape.h"
+
+namespace rondo::solve::icp {
+
+/// Bounds (lower, upper) of each variable of a tape in turn.
+using FlatBox = std::vector<double>;
+
+/// A node of the tree of a search: a leaf was emptied by contraction, an inner node split `variable` at
+/// `value` into its first child (at most `value`) and the next one.
+struct TreeNode {
+  uint32_t first_child = 0;  ///< 0: a leaf
+  uint32_t variable = 0;
+  double value = 0;
+};
+
+struct SearchOptions {
+  unsigned jobs = 1;
+  uint64_t max_boxes = UINT64_MAX;
+  /// Boxes narrower than this in every variable are not split further.
+  double precision = 1e-9;
+  bool record_tree = false;
+  base::StopToken stop;
+  const interval::Kernels* kernels = nullptr;
+  /// Asked about points (one number for each variable) at which the formula looks true. True: it certainly
+  /// is.
+  std::function<bool(const std::vector<double>&)> verify;
+  /// Asked about boxes that were not split further. True: they certainly hold a solution.
+  std::function<bool(const FlatBox&)> verify_box;
+};
+
+struct SearchResult {
+  enum class Kind : uint8_t { kEmpty, kPoint, kBox, kUndecided, kGaveUp };
+  Kind kind = Kind::kGaveUp;
+  std::vector<double> point;  ///< kPoint
+  FlatBox box;                ///< kUndecided: a box in which nothing could be excluded; kBox: with a solution
+  uint64_t boxes = 0;
+  std::vector<TreeNode> tree;  ///< of kEmpty, if it was recorded; the root first
+};
+
+/// Branch and prune: contracts boxes, eight at a time, and splits what is left at the variable with the most
+/// influence. Whether the answer is kEmpty does not depend on `jobs`. Cost: exponential in the number of
+/// variables at worst; polls `stop` between batches.
+SearchResult Search(const Tape& tape, const SearchOptions& options);
+
+}  // namespace rondo::solve::icp
