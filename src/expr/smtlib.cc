@@ -83,6 +83,9 @@ class Printer {
       case Op::kLe:
       case Op::kLt:
       case Op::kToReal:
+      case Op::kSelect:
+      case Op::kStore:
+        return call(Name(term.op));
       case Op::kElementary: {
         const auto function = static_cast<Elementary>(term.payload);
         // These have no names in SMT-LIB that all solvers know.
@@ -94,11 +97,8 @@ class Printer {
           return fmt::format("(ite (<= 0.0 {}) {} (- {}))", first, first, first);
         if (function == Elementary::kMin) return choose("<=", first, Print(args[1]));
         if (function == Elementary::kMax) return choose(">=", first, Print(args[1]));
-        return call(std::string(Name(function)));
+        return call(Name(function));
       }
-      case Op::kSelect:
-      case Op::kStore:
-        return call(Name(term.op));
       case Op::kForall:
       case Op::kExists: {
         std::string text = fmt::format("({} (", Name(term.op));

@@ -305,8 +305,8 @@ void Contractor::RequireChoice(uint32_t i) {
   const auto no_b = static_cast<Lanes>((k_.empty(b) | ~possible_[no]) & need);
   needed_[no] |= no_a;
   needed_[yes] |= no_b;
-  Blend(no_b, a, values_[n.a]);
-  Blend(no_a, b, values_[n.b]);
+  if (tape_.nodes[n.a].op != NodeOp::kConstant) Blend(no_b, a, values_[n.a]);
+  if (tape_.nodes[n.b].op != NodeOp::kConstant) Blend(no_a, b, values_[n.b]);
   needed_[n.a] |= no_b;
   needed_[n.b] |= no_a;
 }
@@ -320,8 +320,15 @@ void Contractor::BackwardNumber(uint32_t i) {
                       n.op == NodeOp::kDiv || n.op == NodeOp::kMin || n.op == NodeOp::kMax ||
                       n.op == NodeOp::kAtan2;
   const Batch& z = values_[i];
-  Batch& a = values_[n.a];
-  Batch& b = values_[n.b];
+  // Constants stay what they are for the boxes to come.
+  Batch constant_a, constant_b;
+  const auto argument = [&](uint32_t node, Batch& constant) -> Batch& {
+    if (tape_.nodes[node].op != NodeOp::kConstant) return values_[node];
+    constant = values_[node];
+    return constant;
+  };
+  Batch& a = argument(n.a, constant_a);
+  Batch& b = argument(n.b, constant_b);
   Batch old_a, old_b;
   const bool some = need != 0xff;
   if (some) {

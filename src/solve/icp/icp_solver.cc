@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "expr/smtlib.h"
 #include "expr/substitute.h"
 #include "solve/icp/contractor.h"
 #include "solve/icp/point.h"
@@ -52,6 +53,13 @@ class Decision {
     search_.max_boxes = split ? kBoxesBeforeCases : options_.max_boxes;
     SearchResult result = Search(tape, search_);
     statistics_.boxes += result.boxes;
+    if (getenv("DBG")) {
+      fprintf(stderr, "case kind %d boxes %lu vars %zu disj %zu nodes %zu\n", (int)result.kind, result.boxes,
+              tape.variables.size(), prepared.disjunctions.size(), tape.nodes.size());
+      for (auto& [t, r] : prepared.ranges)
+        for (auto& l : r.Literals(t))
+          fprintf(stderr, "   %s\n", expr::ToSmtLib(arena_, ToFormula(arena_, l)).c_str());
+    }
     switch (result.kind) {
       case SearchResult::Kind::kEmpty:
         return Status::kUnsat;

@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "expr/substitute.h"
+#include "solve/icp/polynomial.h"
 
 namespace rondo::solve::icp {
 
@@ -117,6 +118,8 @@ class Preparation {
       if (!Holds(arena_.number(literal.term), literal.relation, literal.bound)) out_.contradiction = true;
       return;
     }
+    const TermId condensed = Condensed(literal.term);
+    if (condensed != literal.term) return TakeComparison(condensed, literal.relation, literal.bound);
     if (IsRoot(literal.term) && TakeRoot(literal)) return;
     if (TakeSquares(literal)) return;
     const auto it = variables_.find(literal.term);
@@ -172,6 +175,16 @@ class Preparation {
     // What lies above a number that is not negative is not negative itself.
     if ((literal.relation & kLess) != 0) todo_.push_back(arena_.Le(Number(Zero()), e));
     return true;
+  }
+
+  TermId Condensed(TermId term) {
+    if (const auto it = condensed_.find(term); it != condensed_.end()) return it->second;
+    const TermId result = Condense(arena_, term);
+    condensed_.emplace(term, result);
+    // However its comparison is scaled.
+    if (const auto literal = AsLiteral(arena_, arena_.Le(result, Number(Zero()))))
+      condensed_.emplace(literal->term, literal->term);
+    return result;
   }
 
   void TakeComparison(TermId term, Relation relation, const Rational& bound) {
@@ -270,6 +283,7 @@ class Preparation {
   const std::unordered_map<TermId, Variable>& variables_;
   Prepared& out_;
   std::vector<TermId> todo_;
+  std::unordered_map<TermId, TermId> condensed_;  // by Condense; its results are taken as they are
 };
 
 }  // namespace

@@ -236,6 +236,7 @@ class Worker {
       if (best < count_) break;
     }
     if (best == count_) {
+      if (StillEmpties()) return;
       if (shared_.options.verify_box && shared_.options.verify_box(box_)) {
         shared_.Finish(Kind::kBox, {}, box_);
       } else {
@@ -256,6 +257,16 @@ class Worker {
       stack.bounds[at + 2 * best + (upper ? 0 : 1)] = upper ? next : middle;
       stack.ids.push_back(child + (upper ? 1 : 0));
     }
+  }
+
+  // A box that contraction has just made small may be empty after some more.
+  bool StillEmpties() {
+    for (int l = 0; l < kLanes; ++l) points_.Load(l, box_.data());
+    for (int i = 0; i < 8; ++i) {
+      if (points_.Contract() == 0) return true;
+    }
+    points_.Store(0, box_.data());
+    return false;
   }
 
   double RelativeWidth(size_t v) const {

@@ -142,33 +142,31 @@ class Builder {
     return *sum;
   }
 
-  // A product as powers of what it multiplies.
-  void Factors(TermId t, std::map<TermId, uint32_t>& powers) {
+  // A product as a number and powers of what else it multiplies.
+  void Factors(TermId t, Rational& coefficient, std::map<TermId, uint32_t>& powers) {
     if (arena_.op(t) == Op::kMul) {
-      Factors(arena_.arg(t, 0), powers);
-      Factors(arena_.arg(t, 1), powers);
+      Factors(arena_.arg(t, 0), coefficient, powers);
+      Factors(arena_.arg(t, 1), coefficient, powers);
+    } else if (arena_.IsNumber(t)) {
+      coefficient = coefficient * arena_.number(t);
     } else {
       ++powers[t];
     }
   }
 
   uint32_t Product(TermId t) {
+    Rational coefficient(1);
     std::map<TermId, uint32_t> powers;
-    Factors(t, powers);
+    Factors(t, coefficient, powers);
     std::optional<uint32_t> product;
-    std::optional<uint32_t> coefficient;
     for (const auto& [factor, power] : powers) {
       uint32_t id = Number(factor);
       if (power == 2) id = Push(NodeOp::kSqr, id);
       if (power > 2) id = Push(NodeOp::kPow, id, 0, power);
-      if (arena_.IsNumber(factor)) {
-        coefficient = id;
-      } else {
-        product = product ? Push(NodeOp::kMul, *product, id) : id;
-      }
+      product = product ? Push(NodeOp::kMul, *product, id) : id;
     }
-    if (!product) return *coefficient;
-    return coefficient ? Push(NodeOp::kMul, *coefficient, *product) : *product;
+    if (!product) return Constant(coefficient);
+    return coefficient == Rational(1) ? *product : Push(NodeOp::kMul, Constant(coefficient), *product);
   }
 
   uint32_t Function(Elementary function, const std::vector<TermId>& args) {

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "expr/arena.h"
+
+namespace rondo::solve::icp {
+
+/// A product of atoms (terms that are no sums and no products), sorted; empty: 1.
+using Monomial = std::vector<expr::TermId>;
+using Polynomial = std::map<Monomial, expr::Rational>;
+
+/// `term` multiplied out; nullopt if that has more than `limit` monomials.
+std::optional<Polynomial> Expand(const expr::Arena& arena, expr::TermId term, size_t limit);
+
+/// An equal term that says the same with fewer occurrences: quadratic polynomials by completing squares,
+/// others by collecting a sum that occurs as a factor of several summands when its cofactor is a multiple of
+/// itself. Interval arithmetic is the sharper the fewer occurrences there are. Exact; `term` itself if
+/// nothing applies.
+expr::TermId Condense(expr::Arena& arena, expr::TermId term);
+
+}  // namespace rondo::solve::icp
