@@ -44,7 +44,9 @@ class Decision {
       ++statistics_.exact;
       return Status::kUnsat;
     }
-    const Tape tape = BuildTape(arena_, lowered_.variables, prepared);
+    Prepared rotated = prepared;
+    AddRotations(arena_, rotated);
+    const Tape tape = BuildTape(arena_, lowered_.variables, rotated);
     statistics_.nodes = std::max(statistics_.nodes, tape.nodes.size());
     statistics_.variables = std::max(statistics_.variables, tape.variables.size());
     ++statistics_.cases;

@@ -39,6 +39,8 @@ size_t Degree(const Polynomial& p) {
   return degree;
 }
 
+}  // namespace
+
 TermId ToTerm(Arena& arena, const Polynomial& p) {
   std::vector<TermId> parts{arena.Number(arena.Real(), Rational(0))};
   for (const auto& [m, c] : p) {
@@ -49,6 +51,8 @@ TermId ToTerm(Arena& arena, const Polynomial& p) {
   }
   return arena.Add(std::move(parts));
 }
+
+namespace {
 
 // a x^2 + x l + rest = a (x + l / 2a)^2 - l^2 / 4a + rest, one atom after the other.
 TermId CompleteSquares(Arena& arena, Polynomial p) {

@@ -15,6 +15,8 @@ using Polynomial = std::map<Monomial, expr::Rational>;
 /// `term` multiplied out; nullopt if that has more than `limit` monomials.
 std::optional<Polynomial> Expand(const expr::Arena& arena, expr::TermId term, size_t limit);
 
+expr::TermId ToTerm(expr::Arena& arena, const Polynomial& polynomial);
+
 /// An equal term that says the same with fewer occurrences: quadratic polynomials by completing squares,
 /// others by collecting a sum that occurs as a factor of several summands when its cofactor is a multiple of
 /// itself. Interval arithmetic is the sharper the fewer occurrences there are. Exact; `term` itself if

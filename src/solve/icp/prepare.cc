@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "expr/substitute.h"
 #include "solve/icp/polynomial.h"
+#include "solve/icp/rotation.h"
 
 namespace rondo::solve::icp {
 
@@ -294,6 +295,21 @@ Prepared Prepare(Arena& arena, const std::unordered_map<TermId, Variable>& varia
   result.definitions = std::move(definitions);
   Preparation(arena, variables, result).Run(std::move(conjuncts));
   return result;
+}
+
+void AddRotations(Arena& arena, Prepared& prepared) {
+  Rotations rotations(arena);
+  for (const auto& [term, range] : prepared.ranges) rotations.Rewrite(term);
+  for (const TermId d : prepared.disjunctions) rotations.Rewrite(d);
+  rotations.Restart();
+  std::map<TermId, Range> ranges;
+  for (const auto& [term, range] : prepared.ranges) {
+    Range& merged = ranges[rotations.Rewrite(term)];
+    for (const Literal& literal : range.Literals(term)) merged.Add(literal.relation, literal.bound);
+  }
+  prepared.ranges = std::move(ranges);
+  for (TermId& d : prepared.disjunctions) d = rotations.Rewrite(d);
+  prepared.lemmas = rotations.Lemmas();
 }
 
 std::vector<TermId> Conjuncts(Arena& arena, const Prepared& prepared) {

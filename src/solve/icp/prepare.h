@@ -30,6 +30,8 @@ struct Prepared {
   bool contradiction = false;
   std::map<TermId, Range> ranges;  ///< by the term of the literals: bounds of variables are among them
   std::vector<TermId> disjunctions;
+  /// True for all values of the variables: for contraction only.
+  std::vector<TermId> lemmas;
   /// variable = term over the variables that are left.
   std::vector<std::pair<TermId, TermId>> definitions;
 };
@@ -41,7 +43,10 @@ struct Prepared {
 Prepared Prepare(expr::Arena& arena, const std::unordered_map<TermId, Variable>& variables,
                  std::vector<TermId> conjuncts, std::vector<std::pair<TermId, TermId>> definitions);
 
-/// Everything in `prepared` as formulas.
+/// Rewrites the sums in `prepared` over rotated frames and adds their lemmas; see Rotations.
+void AddRotations(expr::Arena& arena, Prepared& prepared);
+
+/// Everything in `prepared` as formulas, lemmas apart.
 std::vector<TermId> Conjuncts(expr::Arena& arena, const Prepared& prepared);
 
 }  // namespace rondo::solve::icp

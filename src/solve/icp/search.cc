@@ -90,11 +90,26 @@ class Shared {
     return std::move(result_);
   }
 
-  void Start() { result_.tree.resize(options.record_tree ? 1 : 0); }
+  // Contracts the box of the bounds as far as that goes. Its widths are what widths are compared with later.
+  // False if it is empty.
+  bool Start() {
+    result_.tree.resize(options.record_tree ? 1 : 0);
+    for (const TapeVariable& v : tape.variables) root.insert(root.end(), {v.root.lo, v.root.hi});
+    Contractor contractor(tape, *options.kernels);
+    for (int l = 0; l < kLanes; ++l) contractor.Load(l, root.data());
+    for (int i = 0; i < kRootContractions; ++i) {
+      if (contractor.Contract() == 0) return false;
+    }
+    contractor.Store(0, root.data());
+    return true;
+  }
+
+  FlatBox root;
   std::atomic<bool> gave_up{false};
 
  private:
   static constexpr int kUndecidedLimit = 32;
+  static constexpr int kRootContractions = 4;
   std::mutex mutex_, tree_mutex_;
   std::condition_variable wake_;
   std::atomic<unsigned> waiting_{0};
@@ -213,11 +228,12 @@ class Worker {
   }
 
   void Branch(int lane, uint32_t id) {
-    // Only variables that are still wide, compared with where they began: else one variable would be split
-    // for ever.
+    // Of the variables that matter, only those that are still wide, compared with where they began: else one
+    // would be split for ever.
+    const auto score_of = [&](size_t v) { return scores_[v * kLanes + static_cast<size_t>(lane)]; };
     double widest = 0;
     for (size_t v = 0; v < count_; ++v) {
-      if (branchable_[v] && Splittable(v)) widest = std::max(widest, RelativeWidth(v));
+      if (branchable_[v] && Splittable(v) && score_of(v) > 0) widest = std::max(widest, RelativeWidth(v));
     }
     size_t best = count_;
     double best_score = -1;
@@ -225,7 +241,7 @@ class Worker {
       for (size_t v = 0; v < count_; ++v) {
         if (!Splittable(v)) continue;
         if (!any && (!branchable_[v] || RelativeWidth(v) < kAspect * widest)) continue;
-        const double s = scores_[v * kLanes + static_cast<size_t>(lane)];
+        const double s = score_of(v);
         // Unbounded variables first: nothing can be said before they are cut.
         const double score = std::isinf(Width(v)) ? 1e300 : std::isfinite(s) ? s : 1e200;
         if (score > best_score) {
@@ -270,8 +286,7 @@ class Worker {
   }
 
   double RelativeWidth(size_t v) const {
-    const interval::Interval root = tape_.variables[v].root;
-    const double scale = root.hi - root.lo;
+    const double scale = shared_.root[2 * v + 1] - shared_.root[2 * v];
     return std::isfinite(scale) && scale > 0 ? Width(v) / scale : std::min(1.0, Width(v));
   }
 
@@ -291,14 +306,12 @@ class Worker {
 
 SearchResult Search(const Tape& tape, const SearchOptions& options) {
   Shared shared(tape, options);
-  shared.Start();
+  ++shared.boxes;
+  if (!shared.Start()) return shared.Result();
   const unsigned threads = std::max(1u, options.jobs);
   std::vector<std::unique_ptr<Worker>> workers;
   for (unsigned i = 0; i < threads; ++i) workers.push_back(std::make_unique<Worker>(shared, threads));
-  for (const TapeVariable& v : tape.variables) {
-    workers[0]->stack.bounds.push_back(v.root.lo);
-    workers[0]->stack.bounds.push_back(v.root.hi);
-  }
+  workers[0]->stack.bounds = shared.root;
   workers[0]->stack.ids.push_back(0);
   std::vector<std::thread> others;
   for (unsigned i = 1; i < threads; ++i) others.emplace_back([&workers, i] { workers[i]->Run(); });

@@ -39,10 +39,11 @@ class Builder {
       for (const Literal& literal : range.Literals(term)) parts.push_back(Atom(literal));
     }
     for (const TermId d : prepared.disjunctions) parts.push_back(Formula(d));
+    for (const TermId l : prepared.lemmas) parts.push_back(Formula(l));
     tape_.root = Junction(NodeOp::kAnd, parts);
-    CountUses();
+    MarkSingle();
     for (TapeVariable& v : tape_.variables) {
-      v.single = uses_[v.node] == 1;
+      v.single = single_[v.node];
       const auto it = prepared.ranges.find(v.term);
       if (it == prepared.ranges.end()) continue;
       if (it->second.lo) v.root.lo = Enclose(*it->second.lo).lo;
@@ -254,10 +255,15 @@ class Builder {
     return Push(op, first, 0, static_cast<uint32_t>(parts.size()));
   }
 
-  // Uses of a node by numbers; a comparison of a variable with a number is no use.
-  void CountUses() {
-    uses_.assign(tape_.nodes.size(), 0);
-    for (const Node& n : tape_.nodes) {
+  // Marks the nodes of which a number is made only once, and so on up to the comparisons.
+  void MarkSingle() {
+    std::vector<uint32_t> uses(tape_.nodes.size());
+    single_.assign(tape_.nodes.size(), true);
+    for (uint32_t i = static_cast<uint32_t>(tape_.nodes.size()); i-- > 0;) {
+      const Node& n = tape_.nodes[i];
+      const auto use = [&](uint32_t argument) {
+        single_[argument] = single_[argument] && ++uses[argument] == 1 && single_[i];
+      };
       switch (n.op) {
         case NodeOp::kVariable:
         case NodeOp::kConstant:
@@ -274,11 +280,11 @@ class Builder {
         case NodeOp::kMax:
         case NodeOp::kAtan2:
         case NodeOp::kChoose:
-          ++uses_[n.a];
-          ++uses_[n.b];
+          use(n.a);
+          use(n.b);
           break;
         default:
-          ++uses_[n.a];
+          use(n.a);
       }
     }
   }
@@ -290,7 +296,7 @@ class Builder {
   std::unordered_map<std::string, uint32_t> numbers_;
   std::unordered_map<TermId, uint32_t> terms_, formulas_;
   std::map<std::pair<uint32_t, std::string>, uint32_t> threshold_of_;
-  std::vector<uint32_t> uses_;
+  std::vector<bool> single_;
 };
 
 }  // namespace

@@ -62,7 +62,8 @@ struct TapeVariable {
   TermId term;
   uint32_t node;
   bool integral;
-  /// Does its node have one user only? Contraction is exact for such variables, given the others.
+  /// Is it used once, in a number that is used once, and so on? Contraction is exact for such variables,
+  /// given the others.
   bool single;
   interval::Interval root;  ///< encloses all values that the bounds allow
 };
