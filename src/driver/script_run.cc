@@ -103,6 +103,7 @@ class Runner {
     outcome_.text += check.answer + "\n";
     if (const auto* sat = std::get_if<solve::Sat>(&answer)) {
       values_ = sat->values;
+      if (!sat->exact) outcome_.text += "; a solution exists; the values of a model are near it\n";
       for (const expr::TermId v : script_.variables) {
         if (const auto it = values_.find(v); it != values_.end())
           check.model.emplace_back(Name(v), expr::ToString(it->second));

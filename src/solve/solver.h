@@ -42,6 +42,8 @@ struct Unsat {
 /// The engine found an interpretation; values of the wanted terms that it could evaluate.
 struct Sat {
   std::map<expr::TermId, Value> values;
+  /// False: a solution was proved to exist; the values are near it.
+  bool exact = true;
 };
 
 /// The engine gave up.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "expr/smtlib.h"
 #include "expr/substitute.h"
 #include "solve/icp/contractor.h"
 #include "solve/icp/point.h"
@@ -31,6 +30,7 @@ class Decision {
   Status Run() { return Decide(lowered_.conjuncts, {}); }
 
   const Assignment& model() const { return model_; }
+  bool exact() const { return exact_; }
   const FlatBox& box() const { return box_; }
   const std::vector<TermId>& box_variables() const { return box_variables_; }
 
@@ -50,18 +50,12 @@ class Decision {
     statistics_.nodes = std::max(statistics_.nodes, tape.nodes.size());
     statistics_.variables = std::max(statistics_.variables, tape.variables.size());
     ++statistics_.cases;
+    search_.verify_box = [&](const FlatBox& box) { return VerifyBox(prepared, tape, box); };
     search_.verify = [&](const std::vector<double>& point) { return Verify(prepared, tape, point); };
     const bool split = !prepared.disjunctions.empty();
     search_.max_boxes = split ? kBoxesBeforeCases : options_.max_boxes;
     SearchResult result = Search(tape, search_);
     statistics_.boxes += result.boxes;
-    if (getenv("DBG")) {
-      fprintf(stderr, "case kind %d boxes %lu vars %zu disj %zu nodes %zu\n", (int)result.kind, result.boxes,
-              tape.variables.size(), prepared.disjunctions.size(), tape.nodes.size());
-      for (auto& [t, r] : prepared.ranges)
-        for (auto& l : r.Literals(t))
-          fprintf(stderr, "   %s\n", expr::ToSmtLib(arena_, ToFormula(arena_, l)).c_str());
-    }
     switch (result.kind) {
       case SearchResult::Kind::kEmpty:
         return Status::kUnsat;
@@ -101,31 +95,48 @@ class Decision {
     return status;
   }
 
-  // Values that the search left open may be any.
-  bool Verify(const Prepared& prepared, const Tape& tape, const std::vector<double>& point) {
+  // A number that satisfies the bounds of a variable, `value` if that does.
+  static Rational Within(const Range& range, const Rational& value) {
+    const bool below = range.lo && (value < *range.lo || (range.lo_strict && value == *range.lo));
+    const bool above = range.hi && (value > *range.hi || (range.hi_strict && value == *range.hi));
+    if (!below && !above) return value;
+    if (range.lo && range.hi && (range.lo_strict || range.hi_strict))
+      return (*range.lo + *range.hi) / Rational(2);
+    if (below) return range.lo_strict ? *range.lo + Rational(1) : *range.lo;
+    return range.hi_strict ? *range.hi - Rational(1) : *range.hi;
+  }
+
+  Assignment AssignmentOf(const Prepared& prepared, const Tape& tape, const std::vector<double>& point) {
     Assignment assignment;
     for (const auto& [term, variable] : lowered_.variables) assignment.emplace(term, Rational(0));
-    // A variable that no comparison mentions any more still has its bounds.
-    for (const auto& [term, range] : prepared.ranges) {
-      if (!lowered_.variables.contains(term)) continue;
-      if (range.lo && range.hi) {
-        assignment[term] = (*range.lo + *range.hi) / Rational(2);
-      } else if (range.lo) {
-        assignment[term] = *range.lo + Rational(1);
-      } else if (range.hi) {
-        assignment[term] = *range.hi - Rational(1);
-      }
-    }
     for (size_t v = 0; v < point.size(); ++v)
       assignment[tape.variables[v].term] = Rational::FromDouble(point[v]);
-    PointChecker checker(arena_, assignment);
+    for (const auto& [term, range] : prepared.ranges) {
+      if (lowered_.variables.contains(term)) assignment[term] = Within(range, assignment[term]);
+    }
+    return assignment;
+  }
+
+  // Adds the values of eliminated variables. True if all are exact.
+  bool Complete(const Prepared& prepared, PointChecker& checker, Assignment& assignment) {
     bool exact = true;
-    Assignment full = assignment;
     for (const auto& [variable, definition] : prepared.definitions) {
       const auto value = checker.Exact(definition);
       exact = exact && value.has_value();
-      if (value) full[variable] = *value;
+      if (value) {
+        assignment[variable] = *value;
+      } else if (const interval::Interval near = checker.Enclosure(definition); !near.IsEmpty()) {
+        assignment[variable] = Rational::FromDouble(near.Middle());
+      }
     }
+    return exact;
+  }
+
+  bool Verify(const Prepared& prepared, const Tape& tape, const std::vector<double>& point) {
+    const Assignment assignment = AssignmentOf(prepared, tape, point);
+    PointChecker checker(arena_, assignment);
+    Assignment full = assignment;
+    const bool exact = Complete(prepared, checker, full);
     // The query itself, if all values are rational; else what was derived from it.
     bool good = true;
     if (exact) {
@@ -134,8 +145,74 @@ class Decision {
     } else {
       for (const TermId c : Conjuncts(arena_, prepared)) good = good && checker.Check(c) == Truth::kTrue;
     }
-    if (good) model_ = std::move(full);
-    return good;
+    if (!good) return false;
+    model_ = std::move(full);
+    exact_ = exact;
+    return true;
+  }
+
+  // One equation f = c, all else being inequalities that hold around the box: if f - c changes its sign
+  // between two points, it vanishes between them (f is continuous where it is defined).
+  bool VerifyBox(const Prepared& prepared, const Tape& tape, const FlatBox& box) {
+    std::optional<std::pair<TermId, Rational>> equation;
+    std::vector<TermId> others = prepared.disjunctions;
+    for (const auto& [term, range] : prepared.ranges) {
+      for (const Literal& literal : range.Literals(term)) {
+        if (literal.relation != kEqual) {
+          others.push_back(ToFormula(arena_, literal));
+        } else if (equation) {
+          return false;
+        } else {
+          equation = {term, literal.bound};
+        }
+      }
+    }
+    if (!equation || HasJumps(equation->first)) return false;
+    std::vector<double> middle(tape.variables.size());
+    for (size_t v = 0; v < middle.size(); ++v)
+      middle[v] = interval::Interval{box[2 * v], box[2 * v + 1]}.Middle();
+    const interval::Interval target = Enclose(equation->second);
+    for (size_t v = 0; v < middle.size(); ++v) {
+      if (tape.variables[v].integral) continue;
+      for (const double step : {1e-8, 1e-6, 1e-4}) {
+        const interval::Interval segment{middle[v] - step, middle[v] + step};
+        const auto value_at = [&](double x) {
+          std::vector<double> point = middle;
+          point[v] = x;
+          const Assignment assignment = AssignmentOf(prepared, tape, point);
+          PointChecker checker(arena_, assignment);
+          checker.Widen(tape.variables[v].term, interval::Interval::Point(x));
+          return checker.Enclosure(equation->first);
+        };
+        const interval::Interval a = value_at(segment.lo);
+        const interval::Interval b = value_at(segment.hi);
+        if (a.IsEmpty() || b.IsEmpty()) continue;
+        if (!(a.hi < target.lo && b.lo > target.hi) && !(a.lo > target.hi && b.hi < target.lo)) continue;
+        Assignment assignment = AssignmentOf(prepared, tape, middle);
+        PointChecker around(arena_, assignment);
+        around.Widen(tape.variables[v].term, segment);
+        bool good = !around.Enclosure(equation->first).IsEmpty();
+        for (const TermId c : others) good = good && around.Check(c) == Truth::kTrue;
+        if (!good) continue;
+        Complete(prepared, around, assignment);
+        model_ = std::move(assignment);
+        exact_ = false;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // Does something occur that is not continuous where it is defined?
+  bool HasJumps(TermId term) {
+    std::unordered_set<TermId> seen;
+    bool jumps = false;
+    expr::VisitPostorder(arena_, term, seen, [&](TermId t) {
+      jumps = jumps || arena_.op(t) == Op::kIte || arena_.op(t) == Op::kDivide ||
+              (arena_.op(t) == Op::kElementary && (arena_.elementary_of(t) == expr::Elementary::kAtan2 ||
+                                                   arena_.elementary_of(t) == expr::Elementary::kTan));
+    });
+    return jumps;
   }
 
   static constexpr uint64_t kBoxesBeforeCases = 256;
@@ -146,6 +223,7 @@ class Decision {
   Statistics& statistics_;
   SearchOptions search_;
   Assignment model_;
+  bool exact_ = true;
   FlatBox box_;
   std::vector<TermId> box_variables_;
 };
@@ -192,6 +270,7 @@ Answer IcpSolver::Check(const Query& query, const Budget& budget, const base::St
     }
     case Decision::Status::kSat: {
       Sat sat;
+      sat.exact = decision.exact();
       for (const auto& [term, number] : decision.model()) {
         const Variable& variable = lowered.variables.at(term);
         sat.values.emplace(variable.source, ToValue(query, variable, number));

@@ -90,6 +90,11 @@ std::optional<Rational> PointChecker::Exact(TermId term) {
   return v.defined ? v.exact : std::nullopt;
 }
 
+Interval PointChecker::Enclosure(TermId term) {
+  const Value& v = Number(term);
+  return v.defined ? v.range : Interval::Empty();
+}
+
 PointChecker::Value PointChecker::NewNumber(TermId t) {
   const auto args = arena_.args(t);
   const auto value = [&](size_t i) -> const Value& { return values_.at(args[i]); };
@@ -108,6 +113,7 @@ PointChecker::Value PointChecker::NewNumber(TermId t) {
     case Op::kNumber:
       return exactly(arena_.number(t));
     case Op::kVariable: {
+      if (t == widened_.first) return {std::nullopt, widened_.second, true};
       const auto it = point_.find(t);
       if (it == point_.end()) return {std::nullopt, {}, false};
       return exactly(it->second);

@@ -18,9 +18,13 @@ enum class Truth : uint8_t { kFalse, kTrue, kUndecided };
 class PointChecker {
  public:
   PointChecker(const expr::Arena& arena, const Assignment& point) : arena_(arena), point_(point) {}
+  /// The variable may have any value in `range`: what is called true is true for all of them.
+  void Widen(expr::TermId variable, interval::Interval range) { widened_ = {variable, range}; }
   Truth Check(expr::TermId formula);
   /// The value of a term, if it is known exactly.
   std::optional<expr::Rational> Exact(expr::TermId term);
+  /// An enclosure of the value of a term; empty where it may have none.
+  interval::Interval Enclosure(expr::TermId term);
 
  private:
   struct Value {
@@ -34,6 +38,7 @@ class PointChecker {
 
   const expr::Arena& arena_;
   const Assignment& point_;
+  std::pair<expr::TermId, interval::Interval> widened_;
   std::unordered_map<expr::TermId, Value> values_;
 };
 

@@ -17,7 +17,7 @@ using Kind = SearchResult::Kind;
 /// What the threads of one search share.
 class Shared {
  public:
-  Shared(const Tape& tape, const SearchOptions& options) : tape(tape), options(options) {}
+  Shared(const Tape& the_tape, const SearchOptions& the_options) : tape(the_tape), options(the_options) {}
 
   // A stack of boxes: bounds and, for each, its node in the tree.
   struct Boxes {
@@ -63,6 +63,13 @@ class Shared {
     wake_.notify_all();
   }
 
+  void GiveUp() {
+    const std::scoped_lock lock(mutex_);
+    gave_up_ = true;
+    done = true;
+    wake_.notify_all();
+  }
+
   void Undecided(const FlatBox& box) {
     const std::scoped_lock lock(mutex_);
     if (result_.box.empty()) result_.box = box;
@@ -83,7 +90,7 @@ class Shared {
 
   SearchResult Result() {
     if (result_.kind != Kind::kPoint && result_.kind != Kind::kBox) {
-      result_.kind = undecided_ > 0 ? Kind::kUndecided : gave_up ? Kind::kGaveUp : Kind::kEmpty;
+      result_.kind = undecided_ > 0 ? Kind::kUndecided : gave_up_ ? Kind::kGaveUp : Kind::kEmpty;
     }
     if (result_.kind != Kind::kEmpty) result_.tree.clear();
     result_.boxes = boxes;
@@ -105,7 +112,6 @@ class Shared {
   }
 
   FlatBox root;
-  std::atomic<bool> gave_up{false};
 
  private:
   static constexpr int kUndecidedLimit = 32;
@@ -116,6 +122,7 @@ class Shared {
   std::vector<Boxes> offers_;
   SearchResult result_;
   int undecided_ = 0;
+  bool gave_up_ = false;
 };
 
 class Worker {
@@ -143,8 +150,7 @@ class Worker {
       }
       if (shared_.options.stop.StopRequested() ||
           shared_.boxes.load(std::memory_order_relaxed) > shared_.options.max_boxes) {
-        shared_.gave_up = true;
-        shared_.Finish(Kind::kGaveUp, {}, {});
+        shared_.GiveUp();
         return;
       }
       Step();

@@ -1,0 +1,413 @@
+// The interval solver against others: random formulas against Z3 and against sampling, every back end, any
+// number of threads, scaled and permuted copies; and questions that other solvers once answered wrongly.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "expr/evaluate.h"
+#include "lang/smtlib/script.h"
+#include "solve/icp/icp_solver.h"
+#include "solve/z3/z3_solver.h"
+
+namespace rondo::solve::icp {
+namespace {
+
+using expr::Arena;
+using expr::Elementary;
+using expr::Rational;
+using expr::TermId;
+
+std::string Say(const Answer& a) {
+  if (std::holds_alternative<Unsat>(a)) return "unsat";
+  if (std::holds_alternative<Sat>(a)) return "sat";
+  return std::holds_alternative<DeltaSat>(a) ? "delta-sat" : "unknown";
+}
+
+// Random formulas over a few bounded reals.
+class Formulas {
+ public:
+  Formulas(uint64_t seed, bool polynomial) : rng_(seed), polynomial_(polynomial) {
+    for (const char* name : {"x", "y", "z"})
+      variables_.push_back(arena_.Variable(arena_.Declare(name, {}, arena_.Real())));
+    for (const TermId v : variables_) {
+      query_.assertions.push_back({arena_.And(arena_.Le(Number(-2), v), arena_.Le(v, Number(2))), ""});
+    }
+    const int count = 1 + Pick(3);
+    for (int i = 0; i < count; ++i) query_.assertions.push_back({Formula(2), ""});
+    query_.arena = &arena_;
+    query_.wanted = variables_;
+  }
+
+  const Query& query() const { return query_; }
+  const std::vector<TermId>& variables() const { return variables_; }
+  Arena& arena() { return arena_; }
+
+ private:
+  int Pick(int n) { return static_cast<int>(rng_() % static_cast<uint64_t>(n)); }
+  TermId Number(int n) { return arena_.Number(arena_.Real(), Rational(n)); }
+  TermId Constant() {
+    static constexpr const char* kNumbers[] = {"0", "1", "-1", "0.5", "2", "0.1", "-0.3", "1.7", "3"};
+    return arena_.Number(arena_.Real(), *Rational::Parse(kNumbers[Pick(9)]));
+  }
+
+  TermId Formula(int depth) {
+    switch (depth == 0 ? 3 : Pick(6)) {
+      case 0:
+        return arena_.And(Formula(depth - 1), Formula(depth - 1));
+      case 1:
+        return arena_.Or(Formula(depth - 1), Formula(depth - 1));
+      case 2:
+        return arena_.Not(Formula(depth - 1));
+      default: {
+        const TermId a = Term(3);
+        const TermId b = Pick(2) == 0 ? Constant() : Term(2);
+        const int relation = Pick(7);
+        return relation < 3 ? arena_.Le(a, b) : relation < 6 ? arena_.Lt(b, a) : arena_.Eq(a, b);
+      }
+    }
+  }
+
+  TermId Term(int depth) {
+    if (depth == 0) return Pick(4) == 0 ? Constant() : variables_[static_cast<size_t>(Pick(3))];
+    const int choice = Pick(polynomial_ ? 8 : 14);
+    if (choice < 2) return Term(0);
+    const TermId a = Term(depth - 1);
+    if (choice < 4) return arena_.Add(a, Term(depth - 1));
+    if (choice < 5) return arena_.Sub(a, Term(depth - 1));
+    if (choice < 7) return arena_.Mul(a, Term(depth - 1));
+    if (choice < 8) return arena_.Ite(arena_.Le(a, Term(0)), Term(depth - 1), Term(0));
+    static constexpr Elementary kUnary[] = {
+        Elementary::kSin, Elementary::kCos, Elementary::kSqrt, Elementary::kAbs,  Elementary::kAtan,
+        Elementary::kExp, Elementary::kTan, Elementary::kLog,  Elementary::kAsin, Elementary::kAcos};
+    if (choice < 12) return arena_.Apply(kUnary[Pick(choice == 8 ? 2 : 10)], {a});
+    if (choice < 13)
+      return arena_.Apply(Pick(2) == 0 ? Elementary::kMin : Elementary::kMax, {a, Term(depth - 1)});
+    return arena_.Divide(a, Term(depth - 1));
+  }
+
+  std::mt19937_64 rng_;
+  bool polynomial_;
+  Arena arena_;
+  Query query_;
+  std::vector<TermId> variables_;
+};
+
+// Plain floating point, written for this test: does the point satisfy the formula, and by which margin?
+// Undefined terms are NaN, and no comparison with them holds.
+class Sampler {
+ public:
+  Sampler(const Arena& arena, const std::vector<TermId>& variables, std::vector<double> point)
+      : arena_(arena), variables_(variables), point_(std::move(point)) {}
+
+  // What is undefined, or decided by it, is neither clearly true nor clearly false.
+  static constexpr double kNoClaim = -1e-9;
+
+  // Positive: true with that margin.
+  double Margin(TermId f, bool positive) {
+    const auto arg = [&](size_t i) { return arena_.arg(f, i); };
+    switch (arena_.op(f)) {
+      case expr::Op::kBool:
+        return (f == arena_.True()) == positive ? 1 : -1;
+      case expr::Op::kNot:
+        return Margin(arg(0), !positive);
+      case expr::Op::kAnd:
+      case expr::Op::kOr: {
+        const bool all = (arena_.op(f) == expr::Op::kAnd) == positive;
+        double best = all ? 1e300 : -1e300;
+        for (const TermId a : arena_.args(f))
+          best = all ? std::min(best, Margin(a, positive)) : std::max(best, Margin(a, positive));
+        return best;
+      }
+      case expr::Op::kEq: {
+        const double d = std::fabs(Value(arg(0)) - Value(arg(1)));
+        if (std::isnan(d)) return kNoClaim;
+        return positive ? -1 : d;
+      }
+      default: {
+        const double d = Value(arg(1)) - Value(arg(0));
+        if (std::isnan(d)) return kNoClaim;
+        return positive ? d : -d;
+      }
+    }
+  }
+
+ private:
+  double Value(TermId t) {
+    const auto arg = [&](size_t i) { return Value(arena_.arg(t, i)); };
+    switch (arena_.op(t)) {
+      case expr::Op::kNumber:
+        return arena_.number(t).ToDouble();
+      case expr::Op::kVariable:
+        for (size_t v = 0; v < variables_.size(); ++v) {
+          if (variables_[v] == t) return point_[v];
+        }
+        return NAN;
+      case expr::Op::kAdd: {
+        double sum = 0;
+        for (size_t i = 0; i < arena_.args(t).size(); ++i) sum += arg(i);
+        return sum;
+      }
+      case expr::Op::kMul:
+        return arg(0) * arg(1);
+      case expr::Op::kDivide:
+        return arg(1) == 0 ? NAN : arg(0) / arg(1);
+      case expr::Op::kIte: {
+        const double margin = Margin(arena_.arg(t, 0), true);
+        // Near the border rounding decides: no claim is made there.
+        if (std::fabs(margin) < 1e-6) return NAN;
+        return arg(margin > 0 ? 1 : 2);
+      }
+      default:
+        break;
+    }
+    const double a = arg(0);
+    switch (arena_.elementary_of(t)) {
+      case Elementary::kSqrt:
+        return a < 0 ? NAN : std::sqrt(a);
+      case Elementary::kAbs:
+        return std::fabs(a);
+      case Elementary::kMin:
+        return std::min(a, arg(1));
+      case Elementary::kMax:
+        return std::max(a, arg(1));
+      case Elementary::kSin:
+        return std::sin(a);
+      case Elementary::kCos:
+        return std::cos(a);
+      case Elementary::kTan:
+        return std::tan(a);
+      case Elementary::kAsin:
+        return std::asin(a);
+      case Elementary::kAcos:
+        return std::acos(a);
+      case Elementary::kAtan:
+        return std::atan(a);
+      case Elementary::kAtan2:
+        return std::atan2(a, arg(1));
+      case Elementary::kExp:
+        return std::exp(a);
+      case Elementary::kLog:
+        return a <= 0 ? NAN : std::log(a);
+      case Elementary::kCount_:
+        break;
+    }
+    return NAN;
+  }
+
+  const Arena& arena_;
+  const std::vector<TermId>& variables_;
+  std::vector<double> point_;
+};
+
+double BestMargin(Formulas& formulas, uint64_t seed, int samples) {
+  std::mt19937_64 rng(seed);
+  double best = -1e300;
+  for (int i = 0; i < samples; ++i) {
+    std::vector<double> point;
+    for (size_t v = 0; v < formulas.variables().size(); ++v) {
+      const double u = static_cast<double>(rng() >> 11) * 0x1p-53;
+      point.push_back(i % 3 == 0 ? std::round(u * 40 - 20) / 10 : u * 4 - 2);
+    }
+    Sampler sampler(formulas.arena(), formulas.variables(), point);
+    double margin = 1e300;
+    for (const Assertion& a : formulas.query().assertions)
+      margin = std::min(margin, sampler.Margin(a.formula, true));
+    best = std::max(best, margin);
+  }
+  return best;
+}
+
+const Budget kBudget{std::chrono::milliseconds(1000), false};
+
+Options Few() {
+  Options options;
+  options.max_boxes = 20'000;
+  return options;
+}
+
+int Rounds() {
+  const char* text = std::getenv("RONDO_CASES");
+  return text == nullptr ? 400 : std::max(400, static_cast<int>(std::strtol(text, nullptr, 10) / 50));
+}
+
+TEST(Icp, AgreesWithZ3OnPolynomials) {
+  const z3::Z3Solver z3;
+  int decided = 0;
+  for (int seed = 0; seed < Rounds(); ++seed) {
+    Formulas f(static_cast<uint64_t>(seed), true);
+    const Answer mine = IcpSolver(Few()).Check(f.query(), kBudget, {});
+    const Answer other = z3.Check(f.query(), {std::chrono::milliseconds(300), false}, {});
+    if (Say(mine) == "delta-sat" || Say(mine) == "unknown" || Say(other) == "unknown") continue;
+    ++decided;
+    ASSERT_EQ(Say(mine), Say(other)) << "seed " << seed << "\n" << ToSmtLib(f.query());
+  }
+  EXPECT_GT(decided, Rounds() * 6 / 10);
+}
+
+TEST(Icp, NeverExcludesWhatSamplingFinds) {
+  int unsat = 0;
+  int sat = 0;
+  for (int seed = 1000; seed < 1000 + 2 * Rounds(); ++seed) {
+    Formulas f(static_cast<uint64_t>(seed), false);
+    const Answer mine = IcpSolver(Few()).Check(f.query(), kBudget, {});
+    sat += Say(mine) == "sat" ? 1 : 0;
+    if (Say(mine) != "unsat") continue;
+    ++unsat;
+    ASSERT_LT(BestMargin(f, static_cast<uint64_t>(seed), 2000), 1e-7) << "seed " << seed << "\n"
+                                                                      << ToSmtLib(f.query());
+  }
+  EXPECT_GT(unsat, Rounds() / 10);
+  EXPECT_GT(sat, Rounds() / 4);
+}
+
+// What is called a solution satisfies the formula in plain floating point, up to rounding.
+TEST(Icp, SolutionsAreSolutions) {
+  for (int seed = 5000; seed < 5000 + Rounds(); ++seed) {
+    Formulas f(static_cast<uint64_t>(seed), false);
+    const Answer mine = IcpSolver(Few()).Check(f.query(), kBudget, {});
+    if (Say(mine) != "sat") continue;
+    std::vector<double> point;
+    bool complete = true;
+    for (const TermId v : f.variables()) {
+      const auto& values = std::get<Sat>(mine).values;
+      const auto it = values.find(v);
+      complete = complete && it != values.end();
+      point.push_back(it == values.end() ? 0 : it->second.AsNumber().ToDouble());
+    }
+    if (!complete) continue;
+    Sampler sampler(f.arena(), f.variables(), point);
+    for (const Assertion& a : f.query().assertions) {
+      const double negated = sampler.Margin(a.formula, false);
+      ASSERT_LT(negated, 1e-7) << "seed " << seed << " at " << point[0] << " " << point[1] << " " << point[2]
+                               << "\n"
+                               << ToSmtLib(f.query());
+    }
+  }
+}
+
+TEST(Icp, BackEndsAndThreadsDoNotChangeVerdicts) {
+  for (int seed = 9000; seed < 9000 + Rounds() / 4; ++seed) {
+    Formulas f(static_cast<uint64_t>(seed), false);
+    std::string first;
+    for (const interval::Backend backend : interval::AvailableBackends()) {
+      for (const unsigned jobs : {1u, 3u}) {
+        Options options = Few();
+        options.kernels = &interval::KernelsOf(backend);
+        options.jobs = jobs;
+        const std::string said = Say(IcpSolver(options).Check(f.query(), kBudget, {}));
+        // Budgets may run out elsewhere; definite answers may not differ.
+        if (said != "sat" && said != "unsat") continue;
+        if (first.empty()) first = said;
+        ASSERT_EQ(said, first) << "seed " << seed << " " << options.kernels->name << " " << jobs;
+      }
+    }
+  }
+}
+
+std::string Solve(const std::string& text) {
+  diag::SourceSet sources;
+  diag::Diagnostics diagnostics;
+  lang::smtlib::Script script;
+  lang::smtlib::ReadScript(sources, sources.Add("test", text), script, diagnostics);
+  if (diagnostics.has_errors()) return diagnostics.all()[0].message;
+  Query query{&script.arena, {}, {}};
+  for (const auto& c : script.commands) {
+    if (c.kind == lang::smtlib::Command::Kind::kAssert) query.assertions.push_back({c.terms[0], ""});
+  }
+  return Say(IcpSolver().Check(query, {std::chrono::milliseconds(20'000), false}, {}));
+}
+
+const std::string kReals = "(declare-fun x () Real)(declare-fun y () Real)(declare-fun z () Real)";
+
+struct Known {
+  const char* what;
+  const char* script;
+  const char* answer;
+};
+
+class KnownAnswers : public testing::TestWithParam<Known> {};
+
+TEST_P(KnownAnswers, Hold) {
+  EXPECT_EQ(Solve(kReals + GetParam().script), GetParam().answer) << GetParam().what;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, KnownAnswers,
+    testing::Values(
+        Known{"complementary half-spaces", "(assert (< x 0.1))(assert (>= x 0.1))", "unsat"},
+        Known{"complementary half-spaces of a term",
+              "(assert (< (sin x) 0.1))(assert (>= (sin x) 0.1))(assert (<= 0 x 1))", "unsat"},
+        Known{"strict on both sides",
+              "(assert (< (* x y) 0.3))(assert (> (* x y) 0.3))(assert (<= 0 x 1))(assert (<= 0 y 1))",
+              "unsat"},
+        Known{"complementary inside a disjunction",
+              "(assert (<= 0 x 1))(assert (<= 0 y 1))(assert (or (< (* x y) 0.3) (< x -1)))(assert (>= (* x "
+              "y) 0.3))",
+              "unsat"},
+        Known{"a point that only exact arithmetic finds",
+              "(assert (= (+ x (* 3 y)) 0.1))(assert (= (- x y) 0.7))", "sat"},
+        Known{"a vanishing distance",
+              "(assert (= (^ (+ (^ y 2) (^ (+ x -0.3) 2)) (/ 1 2)) 0))(assert (<= x 0.3))", "sat"},
+        Known{"a vanishing distance elsewhere",
+              "(assert (= (^ (+ (^ y 2) (^ (+ x -0.3) 2)) 0.5) 0))(assert (< x 0.3))", "unsat"},
+        Known{"squares in disguise", "(assert (= (+ 0.5 (* x x) (* y y) y (- x)) 0))(assert (> x 0))", "sat"},
+        Known{"the circle identity, as the papers on delta-decisions warn",
+              "(assert (<= 0 x 3))(assert (> (+ (^ (sin x) 2) (^ (cos x) 2)) 1.0001))", "unsat"},
+        Known{"a root is not negative", "(assert (<= -1 x 4))(assert (< (sqrt x) 0))", "unsat"},
+        Known{"outside the domain nothing holds",
+              "(assert (< x -1))(assert (or (<= (sqrt x) 1) (> (sqrt x) 1)))", "unsat"},
+        Known{"an undefined alternative does not exclude the other",
+              "(assert (<= -2 x -1))(assert (or (<= (sqrt x) 1) (<= x -1.5)))", "sat"},
+        Known{"the logarithm below 0", "(assert (<= (log x) 5))(assert (<= -3 x -2))", "unsat"},
+        Known{"numbers that differ only at the end",
+              "(assert (< x 0.1000000000000000000000001))(assert (> x 0.1))", "sat"},
+        Known{"the sine far out", "(assert (<= 1000000 x 1000001))(assert (> (sin x) 1.01))", "unsat"},
+        Known{"empty bounds", "(assert (<= 2 x 1))", "unsat"},
+        Known{"a chain of minima",
+              "(assert (<= 0 x 1))(assert (<= 0 y 1))(assert (> (min x (max y x)) (+ x 0.01)))", "unsat"},
+        Known{"if then else", "(assert (<= -1 x 1))(assert (< (ite (>= x 0) x (- x)) -0.01))", "unsat"},
+        Known{"if then else, possible", "(assert (<= -1 x 1))(assert (< (ite (>= x 0) (- x) x) -0.5))",
+              "sat"},
+        Known{"an angle and its tangent", "(assert (<= 0.1 x 1.4))(assert (< (tan x) x))", "unsat"},
+        Known{"atan2 in the second quadrant",
+              "(assert (<= 1 y 2))(assert (<= -2 x -1))(assert (< (atan2 y x) 1.57))", "unsat"},
+        Known{"a product of two scales",
+              "(assert (<= 0 x 1))(assert (<= 0 y 1))(assert (> (* 3 (* x (* 5 y))) 15.1))", "unsat"},
+        Known{"a product of two scales, possible",
+              "(assert (<= 0 x 1))(assert (<= 0 y 1))(assert (> (* 3 (* x (* 5 (sin y)))) 12))", "sat"},
+        Known{"constants stay constant from box to box",
+              "(assert (<= -10 x 10))(assert (<= -10 y 10))(assert (>= (* x x) 1))(assert (<= (* 2 (* x x)) "
+              "60))"
+              "(assert (= (* x y) 7))(assert (>= (* 3 (+ x y)) 23))",
+              "sat"}),
+    [](const auto& chosen) { return "Case" + std::to_string(chosen.index); });
+
+TEST(Icp, IntegersAndTruthValues) {
+  const std::string head =
+      "(declare-fun i () Int)(declare-fun j () Int)(declare-fun b () Bool)(declare-fun x () Real)";
+  const auto solve = [&](const std::string& text) { return Solve(head + text); };
+  EXPECT_EQ(solve("(assert (< 1 i 2))"), "unsat");
+  EXPECT_EQ(solve("(assert (<= 0 i 10))(assert (<= 0 j 10))(assert (= (* i j) 21))(assert (> i j))"), "sat");
+  EXPECT_EQ(solve("(assert (<= 2 i 10))(assert (<= 2 j 10))(assert (= (* i j) 13))"), "unsat");
+  EXPECT_EQ(solve("(assert (xor b (<= x 1)))(assert b)(assert (<= 0 x 1))"), "unsat");
+  EXPECT_EQ(solve("(assert (= b (<= x 1)))(assert b)(assert (<= 0 x 3))"), "sat");
+  EXPECT_EQ(solve("(assert (<= 0 i 3))(assert (= x (* 0.5 (to_real i))))(assert (> x 1.5))"), "unsat");
+}
+
+// Two discs of which one is turned and moved: where they stand does not matter, how far apart they are does.
+TEST(Icp, MovedScenesHaveTheSameAnswer) {
+  for (const double dx : {0.0, 3.5, -7.25}) {
+    for (const double gap : {0.02, 0.2, -0.05}) {
+      const std::string text = fmt::format(
+          "(declare-fun a () Real)(assert (<= 0 a 6.3))"
+          "(assert (<= (+ (^ (- x {0}) 2) (^ y 2)) 0.25))"
+          "(assert (<= (+ (^ (- x (+ {0} (* {1} (cos a)))) 2) (^ (- y (* {1} (sin a))) 2)) 0.25))",
+          dx, 1 + gap);
+      EXPECT_EQ(Solve(kReals + text), gap > 0 ? "unsat" : "sat") << dx << " " << gap;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rondo::solve::icp
