@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Golden cases: programs that hold their command line and what must be reported about them.
 
-A case is src/<folder>/testdata/<topic>/<case>.koord. Its first line may be `# ARGS: prove ...` (default: check).
-Below each line of the program stand the diagnostics that concern it, as comments `#? kind[:column]: message`; those about
-no place stand at the end. With `# OUTPUT` in the first line, the whole output for people stands at the end in lines `#> `.
+A case is src/<folder>/testdata/<topic>/<case>.koord (or .smt2, where comments begin with `;`). Its first line may be
+`# ARGS: prove ...` (default: check, or solve). Below each line of the program stand the diagnostics that concern it, as
+comments `#? kind[:column]: message`; those about no place stand at the end. With `OUTPUT` in the first line, the whole
+output for people stands at the end in lines `#> `.
 A case whose name starts with `fail_` must end with a status other than 0, any other with 0.
 
   golden.py RONDO [--update] [CASE...]
@@ -20,7 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 def strip(text):
     """The program without expectations."""
     lines = text.split("\n")
-    return [line for line in lines if not re.match(r"\s*#[?>]", line)]
+    return [line for line in lines if not re.match(r"\s*[#;][?>]", line)]
 
 
 def run(rondo, args, path):
@@ -29,13 +30,15 @@ def run(rondo, args, path):
 
 
 def normalise(text):
-    return re.sub(r" +\d+\.\d\d s", "  T s", text)
+    return re.sub(r" +\d+\.\d\d\d? s", "  T s", text)
 
 
 def expected(rondo, path, source_lines):
     """(exit status, the text of the case as it should be)."""
     first = source_lines[0] if source_lines else ""
-    words = first[len("# ARGS:"):].split() if first.startswith("# ARGS:") else ["check"]
+    smt = path.suffix == ".smt2"
+    mark = ";" if smt else "#"
+    words = first[len("# ARGS:"):].split() if first.startswith(f"{mark} ARGS:") else ["solve" if smt else "check"]
     show = "OUTPUT" in words
     args = [w for w in words if w != "OUTPUT"]
     if args[0] == "prove":
@@ -50,14 +53,14 @@ def expected(rondo, path, source_lines):
     disk = path.read_text(encoding="utf-8", errors="surrogateescape").split("\n")
     to_source, count = {}, 0
     for number, line in enumerate(disk, 1):
-        if not re.match(r"\s*#[?>]", line):
+        if not re.match(r"\s*[#;][?>]", line):
             count += 1
         to_source[number] = count
     notes = {}
     for d in diagnostics:
         line = to_source.get(d["line"], 0) if "line" in d else len(source_lines)
         column = f":{d['column']}" if "column" in d else ""
-        notes.setdefault(line, []).append(f"#? {d['kind']}{column}: {d['message']}")
+        notes.setdefault(line, []).append(f"{mark}? {d['kind']}{column}: {d['message']}")
     result = []
     for number, line in enumerate(source_lines, 1):
         result.append(line)
@@ -72,7 +75,7 @@ def expected(rondo, path, source_lines):
         status, out, err = run(rondo, args, relative)
         body = normalise(out + err).rstrip("\n").split("\n")
         ending = result.pop() if result and result[-1] == "" else None
-        result += [f"#> {line}".rstrip() for line in body]
+        result += [f"{mark}> {line}".rstrip() for line in body]
         if ending is not None:
             result.append("")
     return status, "\n".join(result)
@@ -82,7 +85,7 @@ def main():
     rondo = str(pathlib.Path(sys.argv[1]).resolve())
     update = "--update" in sys.argv
     wanted = [a for a in sys.argv[2:] if not a.startswith("--")]
-    cases = sorted(ROOT.glob("src/**/testdata/**/*.koord"))
+    cases = sorted([*ROOT.glob("src/**/testdata/**/*.koord"), *ROOT.glob("src/**/testdata/**/*.smt2")])
     if wanted:
         cases = [c for c in cases if any(w in str(c) for w in wanted)]
     failed, kinds = 0, set()
@@ -97,7 +100,7 @@ def main():
                 status, want = expected(rondo, case, source)
             text = case.read_bytes().decode("utf-8", errors="surrogateescape")
             print(f"updated {case.relative_to(ROOT)}")
-        kinds.update(re.findall(r"^\s*#\? ([a-z-]+)", text, re.M))
+        kinds.update(re.findall(r"^\s*[#;]\? ([a-z-]+)", text, re.M))
         problems = []
         if want != text:
             problems.append("differs from what is expected:\n" + want)

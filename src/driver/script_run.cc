@@ -82,6 +82,7 @@ class Runner {
       portfolio.others = options_.portfolio;
       portfolio.compare = options_.compare;
       portfolio.icp.jobs = options_.jobs;
+      portfolio.icp.lemmas = options_.lemmas;
       portfolio.icp.precision = std::min(kFinest, Precision());
       check.report = solve::portfolio::PortfolioSolver(portfolio).Decide(query, budget, stop_);
     }

@@ -17,6 +17,7 @@ struct ScriptOptions {
   std::chrono::milliseconds timeout{60'000};  ///< for each `(check-sat)`
   std::optional<double> precision;            ///< instead of the script's
   bool compare = false;
+  bool lemmas = true;
   bool want_model = false;  ///< as if `(get-model)` followed each `(check-sat)`
 };
 

@@ -27,6 +27,7 @@ struct Options {
   double timeout = 60;
   double precision = 0;
   bool compare = false;
+  bool no_lemmas = false;
   bool model = false;
   bool stats = false;
   bool json = false;
@@ -105,6 +106,7 @@ int Run(const Options& options) {
   ScriptOptions run;
   run.timeout = std::chrono::milliseconds(static_cast<int64_t>(options.timeout * 1000));
   run.compare = options.compare;
+  run.lemmas = !options.no_lemmas;
   run.want_model = options.model;
   if (options.precision > 0) run.precision = options.precision;
   if (options.solver == "auto") run.portfolio = {&z3};
@@ -165,6 +167,7 @@ void AddSolveVerb(CLI::App& app, int& status) {
                    "the widest box that may be answered with delta-sat; default: what the script says")
       ->check(CLI::Range(1e-12, 1e3));
   verb->add_flag("--compare", options->compare, "ask every engine and compare their answers");
+  verb->add_flag("--no-lemmas", options->no_lemmas, "do not look for rotations, to measure what they bring");
   verb->add_flag("--model", options->model, "print values of the variables after `sat`");
   verb->add_flag("--stats", options->stats, "print what each question took");
   verb->add_flag("--json", options->json, "the answers as JSON on standard output");

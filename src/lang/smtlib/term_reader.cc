@@ -125,8 +125,9 @@ expr::TermId TermReader::Let(const SExpr& e) {
 }
 
 expr::TermId TermReader::Expand(const SExpr& e, const Macro& macro, Args args) {
-  if (args.size() != macro.parameters.size())
-    return Wrong(e, fmt::format("{} arguments are needed, not {}", macro.parameters.size(), args.size()));
+  if (const size_t wanted = macro.parameters.size(); args.size() != wanted)
+    return Wrong(e, fmt::format("`{}` takes {} argument{}, not {}", e.IsList() ? e.items[0].text : e.text,
+                                wanted, wanted == 1 ? "" : "s", args.size()));
   if (++expansions_ > kMostExpansions) {
     diagnostics_.Report(Kind::kSmtUnsupported, e.span, "too many uses of definitions");
     return {};
@@ -174,7 +175,13 @@ expr::TermId TermReader::Application(const SExpr& e) {
   for (const Family family : {&TermReader::Logic, &TermReader::Arithmetic, &TermReader::Function}) {
     if (const auto result = (this->*family)(e, args)) return *result;
   }
-  diagnostics_.Report(Kind::kSmtUnsupported, e.items[0].span, fmt::format("`{}` is no operator", head));
+  std::vector<std::string> names{"and", "or",  "not", "ite",  "distinct", "sqrt", "abs",   "min", "max",
+                                 "sin", "cos", "tan", "asin", "acos",     "atan", "atan2", "exp", "log"};
+  for (const auto& [name, macro] : macros_) names.push_back(name);
+  auto& report =
+      diagnostics_.Report(Kind::kSmtUnsupported, e.items[0].span, fmt::format("`{}` is no operator", head));
+  if (const std::string near = Suggest(head, names); !near.empty())
+    report.Help(fmt::format("did you mean `{}`?", near)).Fix(e.items[0].span, near);
   return {};
 }
 

@@ -45,7 +45,7 @@ class Decision {
       return Status::kUnsat;
     }
     Prepared rotated = prepared;
-    AddRotations(arena_, rotated);
+    if (options_.lemmas) AddRotations(arena_, rotated);
     const Tape tape = BuildTape(arena_, lowered_.variables, rotated);
     statistics_.nodes = std::max(statistics_.nodes, tape.nodes.size());
     statistics_.variables = std::max(statistics_.variables, tape.variables.size());
@@ -154,6 +154,10 @@ class Decision {
   // One equation f = c, all else being inequalities that hold around the box: if f - c changes its sign
   // between two points, it vanishes between them (f is continuous where it is defined).
   bool VerifyBox(const Prepared& prepared, const Tape& tape, const FlatBox& box) {
+    std::vector<double> middle(tape.variables.size());
+    for (size_t v = 0; v < middle.size(); ++v)
+      middle[v] = interval::Interval{box[2 * v], box[2 * v + 1]}.Middle();
+    if (Verify(prepared, tape, middle)) return true;
     std::optional<std::pair<TermId, Rational>> equation;
     std::vector<TermId> others = prepared.disjunctions;
     for (const auto& [term, range] : prepared.ranges) {
@@ -168,9 +172,6 @@ class Decision {
       }
     }
     if (!equation || HasJumps(equation->first)) return false;
-    std::vector<double> middle(tape.variables.size());
-    for (size_t v = 0; v < middle.size(); ++v)
-      middle[v] = interval::Interval{box[2 * v], box[2 * v + 1]}.Middle();
     const interval::Interval target = Enclose(equation->second);
     for (size_t v = 0; v < middle.size(); ++v) {
       if (tape.variables[v].integral) continue;

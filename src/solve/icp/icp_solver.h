@@ -11,6 +11,7 @@ struct Options {
   /// A box this narrow in which nothing can be excluded is the answer `DeltaSat`.
   double precision = 1e-9;
   uint64_t max_boxes = UINT64_MAX;
+  bool lemmas = true;                          ///< look for rotations; off only to measure what that brings
   const interval::Kernels* kernels = nullptr;  ///< none: the best of this machine
 };
 

@@ -1,6 +1,7 @@
 #include "solve/icp/rotation.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -31,6 +32,32 @@ bool IsCall(const expr::Arena& arena, expr::TermId t, Elementary f) {
   return arena.op(t) == Op::kElementary && arena.elementary_of(t) == f;
 }
 
+// The sum as a polynomial in its factors, which may be sums.
+Polynomial Shallow(const expr::Arena& arena, expr::TermId sum) {
+  Polynomial result;
+  for (const expr::TermId summand : arena.args(sum)) {
+    Rational coefficient(1);
+    Monomial factors;
+    std::vector<expr::TermId> todo{summand};
+    while (!todo.empty()) {
+      const expr::TermId t = todo.back();
+      todo.pop_back();
+      if (arena.op(t) == Op::kMul) {
+        todo.insert(todo.end(), {arena.arg(t, 0), arena.arg(t, 1)});
+      } else if (arena.IsNumber(t)) {
+        coefficient = coefficient * arena.number(t);
+      } else {
+        factors.push_back(t);
+      }
+    }
+    std::sort(factors.begin(), factors.end());
+    const auto [it, fresh] = result.emplace(std::move(factors), coefficient);
+    if (!fresh) it->second = it->second + coefficient;
+    if (it->second.IsZero()) result.erase(it);
+  }
+  return result;
+}
+
 }  // namespace
 
 expr::TermId Rotations::Rewrite(TermId formula) {
@@ -53,18 +80,20 @@ bool Rotations::IsTotal(TermId term) const {
 
 expr::TermId Rotations::RewriteSum(TermId sum) {
   if (!IsTotal(sum)) return sum;
-  const auto polynomial = Expand(arena_, sum, kMostMonomials);
-  if (!polynomial) return sum;
-  std::set<TermId> angles;
-  for (const auto& [m, c] : *polynomial) {
-    for (const TermId t : m) {
-      if (IsCall(arena_, t, Elementary::kSin) || IsCall(arena_, t, Elementary::kCos))
-        angles.insert(arena_.arg(t, 0));
+  // As it is written, with sums as factors, which keeps chains of frames apart; else multiplied out.
+  for (const auto& polynomial : {std::optional(Shallow(arena_, sum)), Expand(arena_, sum, kMostMonomials)}) {
+    if (!polynomial) continue;
+    std::set<TermId> angles;
+    for (const auto& [m, c] : *polynomial) {
+      for (const TermId t : m) {
+        if (IsCall(arena_, t, Elementary::kSin) || IsCall(arena_, t, Elementary::kCos))
+          angles.insert(arena_.arg(t, 0));
+      }
     }
-  }
-  for (const TermId angle : angles) {
-    const TermId result = RewriteAngle(*polynomial, angle);
-    if (result.valid()) return result;
+    for (const TermId angle : angles) {
+      const TermId result = RewriteAngle(*polynomial, angle);
+      if (result.valid()) return result;
+    }
   }
   return sum;
 }

@@ -63,6 +63,16 @@ class Shared {
     wake_.notify_all();
   }
 
+  // One at a time, and none after the search has ended: what they leave behind belongs to the answer.
+  bool Verify(const std::vector<double>& point) {
+    const std::scoped_lock lock(verify_mutex_);
+    return !done && options.verify(point) && (done = true);
+  }
+  bool VerifyBox(const FlatBox& box) {
+    const std::scoped_lock lock(verify_mutex_);
+    return !done && options.verify_box && options.verify_box(box) && (done = true);
+  }
+
   void GiveUp() {
     const std::scoped_lock lock(mutex_);
     gave_up_ = true;
@@ -116,7 +126,7 @@ class Shared {
  private:
   static constexpr int kUndecidedLimit = 32;
   static constexpr int kRootContractions = 4;
-  std::mutex mutex_, tree_mutex_;
+  std::mutex mutex_, tree_mutex_, verify_mutex_;
   std::condition_variable wake_;
   std::atomic<unsigned> waiting_{0};
   std::vector<Boxes> offers_;
@@ -216,7 +226,7 @@ class Worker {
       points_.Store(l, point.data());
       std::vector<double> candidate(count_);
       for (size_t v = 0; v < count_; ++v) candidate[v] = point[2 * v];
-      if (!shared_.options.verify(candidate)) continue;
+      if (!shared_.Verify(candidate)) continue;
       shared_.Finish(Kind::kPoint, std::move(candidate), {});
       return true;
     }
@@ -259,7 +269,7 @@ class Worker {
     }
     if (best == count_) {
       if (StillEmpties()) return;
-      if (shared_.options.verify_box && shared_.options.verify_box(box_)) {
+      if (shared_.VerifyBox(box_)) {
         shared_.Finish(Kind::kBox, {}, box_);
       } else {
         shared_.Undecided(box_);

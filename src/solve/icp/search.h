@@ -30,10 +30,10 @@ struct SearchOptions {
   bool record_tree = false;
   base::StopToken stop;
   const interval::Kernels* kernels = nullptr;
-  /// Asked about points (one number for each variable) at which the formula looks true. True: it certainly
-  /// is.
+  /// Asked, by one thread at a time, about points (one number for each variable) at which the formula looks
+  /// true. True: it certainly is.
   std::function<bool(const std::vector<double>&)> verify;
-  /// Asked about boxes that were not split further. True: they certainly hold a solution.
+  /// Likewise about boxes that were not split further. True: they certainly hold a solution.
   std::function<bool(const FlatBox&)> verify_box;
 };
 
