@@ -432,13 +432,17 @@ void Contractor::Influence(std::vector<double>& scores) {
     return std::max(std::fabs(values_[node].nl[l]), std::fabs(values_[node].hi[l]));
   };
   for (const Threshold& t : tape_.thresholds) {
+    if (t.lemma) continue;
     const uint32_t node = tape_.nodes[t.node].a;
     const Comparison& c = comparisons_[tape_.nodes[t.node].n];
-    const auto open = static_cast<Lanes>((c.less | c.equal) & (c.greater | c.equal) & (c.less | c.greater));
+    // An inequality that is not decided; of an equation, only equality is left.
+    const auto open = static_cast<Lanes>(c.equal & (c.less | c.greater));
+    const auto equation = static_cast<Lanes>(c.equal & ~c.less & ~c.greater);
     double* adj = adjoint(node);
     for (int l = 0; l < kLanes; ++l) {
       const double width = values_[node].hi[l] + values_[node].nl[l];
       if ((open >> l & 1) != 0 && width > 0 && width < kInf) adj[l] += 1 / width;
+      if ((equation >> l & 1) != 0) adj[l] += 1;
     }
   }
   for (uint32_t i = static_cast<uint32_t>(tape_.nodes.size()); i-- > 0;) {

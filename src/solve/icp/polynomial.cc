@@ -100,12 +100,9 @@ void Factor(Arena& arena, TermId t, Factored& out) {
       return;
     }
     case Op::kAdd: {
-      const TermId first = arena.arg(t, arena.IsNumber(arena.arg(t, 0)) ? 1 : 0);
-      Rational lead(1);
-      if (arena.op(first) == Op::kMul && arena.IsNumber(arena.arg(first, 0)))
-        lead = arena.number(arena.arg(first, 0));
+      const auto [lead, monic] = Monic(arena, t);
       out.coefficient = out.coefficient * lead;
-      out.factors.push_back(arena.Mul(arena.Number(arena.Real(), Rational(1) / lead), t));
+      out.factors.push_back(monic);
       return;
     }
     default:
@@ -163,6 +160,15 @@ std::optional<TermId> CollectFactor(Arena& arena, TermId term, TermId s) {
 }
 
 }  // namespace
+
+std::pair<Rational, TermId> Monic(Arena& arena, TermId term) {
+  if (arena.op(term) != Op::kAdd) return {Rational(1), term};
+  const TermId first = arena.arg(term, arena.IsNumber(arena.arg(term, 0)) ? 1 : 0);
+  Rational lead(1);
+  if (arena.op(first) == Op::kMul && arena.IsNumber(arena.arg(first, 0)))
+    lead = arena.number(arena.arg(first, 0));
+  return {lead, arena.Mul(arena.Number(arena.Real(), Rational(1) / lead), term)};
+}
 
 std::optional<Polynomial> Expand(const Arena& arena, TermId term, size_t limit) {
   Polynomial result;

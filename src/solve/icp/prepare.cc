@@ -299,13 +299,14 @@ Prepared Prepare(Arena& arena, const std::unordered_map<TermId, Variable>& varia
 
 void AddRotations(Arena& arena, Prepared& prepared) {
   Rotations rotations(arena);
-  for (const auto& [term, range] : prepared.ranges) rotations.Rewrite(term);
-  for (const TermId d : prepared.disjunctions) rotations.Rewrite(d);
-  rotations.Restart();
   std::map<TermId, Range> ranges;
   for (const auto& [term, range] : prepared.ranges) {
-    Range& merged = ranges[rotations.Rewrite(term)];
-    for (const Literal& literal : range.Literals(term)) merged.Add(literal.relation, literal.bound);
+    const TermId rewritten = rotations.Rewrite(term);
+    for (const Literal& literal : range.Literals(rewritten)) {
+      const auto scaled = AsLiteral(arena, ToFormula(arena, literal));
+      CHECK(scaled.has_value()) << "a comparison";
+      ranges[scaled->term].Add(scaled->relation, scaled->bound);
+    }
   }
   prepared.ranges = std::move(ranges);
   for (TermId& d : prepared.disjunctions) d = rotations.Rewrite(d);

@@ -24,18 +24,16 @@ Complex Divide(const Complex& a, const Complex& b) {
   return {(a.first * b.first + a.second * b.second) / norm, (a.second * b.first - a.first * b.second) / norm};
 }
 
-Complex Times(const Complex& a, const Complex& b) {
-  return {a.first * b.first - a.second * b.second, a.first * b.second + a.second * b.first};
-}
-
 bool IsCall(const expr::Arena& arena, expr::TermId t, Elementary f) {
   return arena.op(t) == Op::kElementary && arena.elementary_of(t) == f;
 }
 
 // The sum as a polynomial in its factors, which may be sums.
-Polynomial Shallow(const expr::Arena& arena, expr::TermId sum) {
+Polynomial Shallow(expr::Arena& arena, expr::TermId sum) {
   Polynomial result;
-  for (const expr::TermId summand : arena.args(sum)) {
+  const auto args = arena.args(sum);
+  const std::vector<expr::TermId> summands(args.begin(), args.end());
+  for (const expr::TermId summand : summands) {
     Rational coefficient(1);
     Monomial factors;
     std::vector<expr::TermId> todo{summand};
@@ -47,7 +45,9 @@ Polynomial Shallow(const expr::Arena& arena, expr::TermId sum) {
       } else if (arena.IsNumber(t)) {
         coefficient = coefficient * arena.number(t);
       } else {
-        factors.push_back(t);
+        const auto [lead, monic] = Monic(arena, t);
+        coefficient = coefficient * lead;
+        factors.push_back(monic);
       }
     }
     std::sort(factors.begin(), factors.end());
@@ -136,44 +136,30 @@ expr::TermId Rotations::RewriteAngle(const Polynomial& polynomial, TermId angle)
   return arena_.Add(std::move(parts));
 }
 
+// Scaled and turned so that the first coefficient is 1, equal vectors are recognised however they are
+// written.
 Rotations::Frame& Rotations::FrameOf(TermId angle, const Vector& vector, Complex& ratio) {
+  ratio = vector.begin()->second;
+  Vector canonical;
+  for (const auto& [m, z] : vector) canonical.emplace(m, Divide(z, ratio));
   for (Frame& frame : frames_[angle]) {
-    if (frame.vector.size() != vector.size()) continue;
-    const Complex k = Divide(vector.begin()->second, frame.vector.begin()->second);
-    bool multiple = true;
-    for (auto i = vector.begin(), j = std::as_const(frame.vector).begin(); multiple && i != vector.end();
-         ++i, ++j)
-      multiple = i->first == j->first && i->second == Times(k, j->second);
-    if (!multiple) continue;
-    ratio = k;
-    if (Size(vector) < Size(frame.vector)) {
-      frame = MakeFrame(angle, vector);
-      ratio = {Rational(1), Rational(0)};
-    }
-    return frame;
+    if (frame.vector == canonical) return frame;
   }
-  ratio = {Rational(1), Rational(0)};
-  frames_[angle].push_back(MakeFrame(angle, vector));
-  return frames_[angle].back();
-}
-
-// How many products its coordinates take.
-size_t Rotations::Size(const Vector& vector) {
-  size_t size = 0;
-  for (const auto& [m, z] : vector) size += (z.first.IsZero() ? 0u : 1u) + (z.second.IsZero() ? 0u : 1u);
-  return size;
-}
-
-Rotations::Frame Rotations::MakeFrame(TermId angle, const Vector& vector) {
   Frame frame;
-  frame.vector = vector;
-  frame.a = Part(vector, false);
-  frame.b = Part(vector, true);
+  frame.a = Part(canonical, false);
+  frame.b = Part(canonical, true);
+  frame.vector = std::move(canonical);
   const TermId cosine = arena_.Apply(Elementary::kCos, {angle});
   const TermId sine = arena_.Apply(Elementary::kSin, {angle});
-  frame.p = arena_.Add(arena_.Mul(frame.a, cosine), arena_.Mul(frame.b, sine));
-  frame.q = arena_.Sub(arena_.Mul(frame.b, cosine), arena_.Mul(frame.a, sine));
-  return frame;
+  // Numbers stay outside, so that a sum and its negative do not become two terms.
+  const auto times = [this](TermId part, TermId wave) {
+    const auto [lead, monic] = Monic(arena_, part);
+    return arena_.Mul(arena_.Number(arena_.Real(), lead), arena_.Mul(monic, wave));
+  };
+  frame.p = arena_.Add(times(frame.a, cosine), times(frame.b, sine));
+  frame.q = arena_.Sub(times(frame.b, cosine), times(frame.a, sine));
+  frames_[angle].push_back(std::move(frame));
+  return frames_[angle].back();
 }
 
 expr::TermId Rotations::Part(const Vector& vector, bool imaginary) {
@@ -186,10 +172,10 @@ expr::TermId Rotations::Part(const Vector& vector, bool imaginary) {
   return arena_.op(plain) == Op::kAdd ? RewriteSum(plain) : plain;
 }
 
-void Rotations::Restart() {
-  for (auto& [angle, frames] : frames_) {
-    for (Frame& f : frames) f.both = false;
-  }
+// Its square, by the one term that stands for it wherever it occurs.
+expr::TermId Rotations::Square(TermId term) {
+  const auto [lead, monic] = Monic(arena_, term);
+  return arena_.Mul(arena_.Number(arena_.Real(), lead * lead), arena_.Mul(monic, monic));
 }
 
 std::vector<expr::TermId> Rotations::Lemmas() {
@@ -197,8 +183,8 @@ std::vector<expr::TermId> Rotations::Lemmas() {
   for (const auto& [angle, frames] : frames_) {
     for (const Frame& f : frames) {
       if (!f.both) continue;
-      const TermId before = Condense(arena_, arena_.Add(arena_.Mul(f.a, f.a), arena_.Mul(f.b, f.b)));
-      const TermId after = arena_.Add(arena_.Mul(f.p, f.p), arena_.Mul(f.q, f.q));
+      const TermId before = arena_.Add(Square(f.a), Square(f.b));
+      const TermId after = arena_.Add(Square(f.p), Square(f.q));
       result.push_back(arena_.Eq(before, after));
     }
   }

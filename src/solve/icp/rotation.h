@@ -18,10 +18,8 @@ class Rotations {
  public:
   explicit Rotations(expr::Arena& arena) : arena_(arena) {}
 
-  /// An equal formula, its sums rewritten. Of all vectors that differ by a rotation and a scale, the simplest
-  /// one that was met so far serves: rewrite everything, call `Restart`, and rewrite again.
+  /// An equal formula, its sums rewritten.
   expr::TermId Rewrite(expr::TermId formula);
-  void Restart();
 
   /// Equations that hold for all values: one for each vector of which both coordinates were met.
   std::vector<expr::TermId> Lemmas();
@@ -44,8 +42,7 @@ class Rotations {
   TermId RewriteSum(TermId sum);
   TermId RewriteAngle(const Polynomial& polynomial, TermId angle);
   Frame& FrameOf(TermId angle, const Vector& vector, Complex& ratio);
-  static size_t Size(const Vector& vector);
-  Frame MakeFrame(TermId angle, const Vector& vector);
+  TermId Square(TermId term);
   TermId Part(const Vector& vector, bool imaginary);
 
   expr::Arena& arena_;

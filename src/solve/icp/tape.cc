@@ -39,7 +39,9 @@ class Builder {
       for (const Literal& literal : range.Literals(term)) parts.push_back(Atom(literal));
     }
     for (const TermId d : prepared.disjunctions) parts.push_back(Formula(d));
+    const size_t own = tape_.thresholds.size();
     for (const TermId l : prepared.lemmas) parts.push_back(Formula(l));
+    for (size_t t = own; t < tape_.thresholds.size(); ++t) tape_.thresholds[t].lemma = true;
     tape_.root = Junction(NodeOp::kAnd, parts);
     MarkSingle();
     for (TapeVariable& v : tape_.variables) {
@@ -219,7 +221,7 @@ class Builder {
       const auto index = static_cast<uint32_t>(tape_.thresholds.size());
       const uint32_t id = Push(NodeOp::kThreshold, node, 0, index);
       const Interval enclosure = Enclose(literal.bound);
-      tape_.thresholds.push_back({id, literal.bound, enclosure.lo, enclosure.hi});
+      tape_.thresholds.push_back({id, literal.bound, enclosure.lo, enclosure.hi, false});
       it = threshold_of_.emplace(key, id).first;
     }
     return Push(NodeOp::kAtom, it->second, 0, literal.relation);

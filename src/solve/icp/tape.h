@@ -54,8 +54,9 @@ struct Node {
 struct Threshold {
   uint32_t node;  ///< the kThreshold node
   Rational value;
-  double below;  ///< the largest double <= value
-  double above;  ///< the smallest double >= value
+  double below;        ///< the largest double <= value
+  double above;        ///< the smallest double >= value
+  bool lemma = false;  ///< of a comparison that holds anyway
 };
 
 struct TapeVariable {
