@@ -1,4 +1,4 @@
-; Two rectangles that turn freely.
+; Two rectangles that turn freely share no point as long as their centres keep their distance.
 ; expect: unsat
 (set-logic QF_NRA)
 (declare-fun x1 () Real [-0.5, 0.5])

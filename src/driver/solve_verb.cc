@@ -172,7 +172,7 @@ void AddSolveVerb(CLI::App& app, int& status) {
   verb->add_flag("--stats", options->stats, "print what each question took");
   verb->add_flag("--json", options->json, "the answers as JSON on standard output");
   verb->footer(
-      "example: rondo solve --model --stats examples/smt/arm.smt2\n\n"
+      "example: rondo solve --model --stats examples/smt/levels.smt2\n\n"
       "answers: unsat (no solution, rigorously), sat (with a verified solution), delta-sat (a small box in "
       "which\n"
       "nothing could be excluded), unknown\n"

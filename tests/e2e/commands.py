@@ -31,7 +31,7 @@ def check(name, good, detail=""):
 
 LINEFORM = "examples/koord/lineform.koord"
 
-for args in (["--help"], ["check", "--help"], ["prove", "--help"], ["fmt", "--help"], ["explain", "--help"], ["ast", "--help"]):
+for args in (["--help"], ["check", "--help"], ["prove", "--help"], ["fmt", "--help"], ["explain", "--help"], ["ast", "--help"], ["solve", "--help"]):
     done = rondo(*args)
     check(f"{args}", done.returncode == 0 and "example" in done.stdout, done.stdout + done.stderr)
 for args in ([], ["nonsense"], ["prove"], ["prove", LINEFORM, "--robots", "0"], ["explain", "koord-nonsense"]):
@@ -49,6 +49,30 @@ check("proved", rondo("prove", LINEFORM).returncode == 0)
 check("refuted", rondo("prove", "examples/koord/mutex_naive.koord").returncode == 1)
 unknown = rondo("prove", "--no-cache", "tests/mutants/delivery_no_remove.koord", "--timeout", "1")
 check("unknown", unknown.returncode == 3 and "unknown: taken" in unknown.stdout, unknown.stdout[-500:])
+
+# SMT-LIB scripts: expected answers, several files, engines compared, models, what is too hard, what is wrong.
+SCRIPTS = sorted((ROOT / "examples/smt").glob("*.smt2"))
+for script in SCRIPTS:
+    wanted = script.read_text().split("; expect: ")[1].split("\n")[0].split()
+    for extra in ([], ["--solver", "icp", "--jobs", "1"], ["--no-lemmas", "--timeout", "5"]):
+        done = rondo("solve", "--json", *extra, str(script))
+        answers = [a["answer"] for a in json.loads(done.stdout)["files"][0]["answers"]]
+        good = answers == wanted and done.returncode == 0
+        check(f"solve {script.name} {extra}", good or ("--no-lemmas" in extra and done.returncode == 3), done.stdout)
+done = rondo("solve", *map(str, SCRIPTS))
+check("solve several", done.returncode == 0 and "levels.smt2: sat" in done.stdout, done.stdout + done.stderr)
+polynomial = FOLDER / "polynomial.smt2"
+polynomial.write_text("(declare-fun x () Real [0, 2])(assert (= (* x x) 2))(check-sat)(get-model)")
+done = rondo("solve", "--compare", str(polynomial))
+check("solve by two engines", done.returncode == 0 and done.stdout.startswith("sat"), done.stdout)
+done = rondo("solve", "--solver", "icp", "--model", str(polynomial))
+check("a solution near", "a solution exists" in done.stdout and "define-fun x" in done.stdout, done.stdout)
+identity = FOLDER / "identity.smt2"
+identity.write_text("(declare-fun x () Real [0, 1])(assert (> (sin (* 2 x)) (* 2 (sin x) (cos x))))(check-sat)")
+check("undecided", rondo("solve", "--solver", "icp", str(identity)).returncode == 3)
+done = rondo("solve", "--solver", "no-such-solver", str(polynomial))
+check("a solver that is not there", done.returncode == 3 and "no-such-solver" in done.stdout, done.stdout + done.stderr)
+check("no script", rondo("solve", "missing.smt2").returncode == 1)
 
 # The cache: the second run finds the proofs; a changed program does not.
 cached = rondo("prove", LINEFORM)

@@ -30,10 +30,6 @@ class Contractor {
   Lanes Contract();
   /// Encloses all values and says in which lanes the formula is possible. Contracts nothing.
   Lanes Evaluate();
-  /// After Evaluate: lanes in which every atomic formula that matters is decided to be true, as far as
-  /// doubles can tell. A hint only: nothing rests on it.
-  Lanes LooksTrue() const;
-
   /// After Contract: how much each variable can change the undecided comparisons, by lane: sums over them of
   /// |derivative| * width, relative to the width of the compared term (after SmearSumRel, Trombettoni et al.
   /// 2011). A heuristic: rounding is not controlled. `scores` holds kLanes numbers for each variable.

@@ -8,7 +8,7 @@
 (assert (>= (twise speed) 1))
 ;? smt-unsupported:14: `twise` is no operator
 (assert (>= (twice speed speed) 1))
-;? smt-sort:13: 1 arguments are needed, not 2
+;? smt-sort:13: `twice` takes 1 argument, not 2
 (check-sat)
 ;> error: `speed` is declared twice [smt-undeclared]
 ;>   --> src/lang/smtlib/testdata/scripts/fail_names.smt2:3:14
@@ -31,8 +31,12 @@
 ;>    |
 ;>  8 | (assert (>= (twise speed) 1))
 ;>    |              ^^^^^
+;> help: did you mean `twice`?
+;>    |
+;>  8 | (assert (>= (twice speed) 1))
+;>    |              ~~~~~
 ;>
-;> error: 1 arguments are needed, not 2 [smt-sort]
+;> error: `twice` takes 1 argument, not 2 [smt-sort]
 ;>   --> src/lang/smtlib/testdata/scripts/fail_names.smt2:10:13
 ;>    |
 ;> 10 | (assert (>= (twice speed speed) 1))

@@ -1,0 +1,16 @@
+; A little closer, and in some pose they do.
+; expect: sat
+(set-logic QF_NRA)
+(declare-fun x1 () Real [-0.5, 0.5])
+(declare-fun y1 () Real [-0.5, 0.5])
+(declare-fun a1 () Real [-3.15, 3.15])
+(declare-fun x2 () Real [0.897213595500, 1.397213595500])
+(declare-fun y2 () Real [-0.5, 0.5])
+(declare-fun a2 () Real [-3.15, 3.15])
+(declare-fun px () Real [-2, 2])
+(declare-fun py () Real [-2, 2])
+(assert (<= (- 0.2) (+ (* (- px x1) (cos a1)) (* (- py y1) (sin a1))) 0.2))
+(assert (<= (- 0.1) (- (* (- py y1) (cos a1)) (* (- px x1) (sin a1))) 0.1))
+(assert (<= (- 0.2) (+ (* (- px x2) (cos a2)) (* (- py y2) (sin a2))) 0.2))
+(assert (<= (- 0.1) (- (* (- py y2) (cos a2)) (* (- px x2) (sin a2))) 0.1))
+(check-sat)
