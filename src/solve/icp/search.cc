@@ -164,7 +164,7 @@ class Worker {
         return;
       }
       Step();
-      if (threads_ > 1 && stack.size() > 2 * kLanes && shared_.Idle()) Share();
+      if (threads_ > 1 && stack.size() > size_t{2} * kLanes && shared_.Idle()) Share();
     }
   }
 
