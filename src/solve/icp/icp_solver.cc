@@ -117,17 +117,16 @@ class Decision {
     return assignment;
   }
 
-  // Adds the values of eliminated variables. True if all are exact.
-  bool Complete(const Prepared& prepared, PointChecker& checker, Assignment& assignment) {
+  // Adds the values of eliminated variables. Are all exact? nullopt if one has no value: its equation does
+  // not hold.
+  std::optional<bool> Complete(const Prepared& prepared, PointChecker& checker, Assignment& assignment) {
     bool exact = true;
     for (const auto& [variable, definition] : prepared.definitions) {
+      const interval::Interval near = checker.Enclosure(definition);
+      if (near.IsEmpty()) return std::nullopt;
       const auto value = checker.Exact(definition);
       exact = exact && value.has_value();
-      if (value) {
-        assignment[variable] = *value;
-      } else if (const interval::Interval near = checker.Enclosure(definition); !near.IsEmpty()) {
-        assignment[variable] = Rational::FromDouble(near.Middle());
-      }
+      assignment[variable] = value ? *value : Rational::FromDouble(near.Middle());
     }
     return exact;
   }
@@ -136,10 +135,11 @@ class Decision {
     const Assignment assignment = AssignmentOf(prepared, tape, point);
     PointChecker checker(arena_, assignment);
     Assignment full = assignment;
-    const bool exact = Complete(prepared, checker, full);
+    const std::optional<bool> exact = Complete(prepared, checker, full);
+    if (!exact) return false;
     // The query itself, if all values are rational; else what was derived from it.
     bool good = true;
-    if (exact) {
+    if (*exact) {
       PointChecker original(arena_, full);
       for (const TermId c : lowered_.conjuncts) good = good && original.Check(c) == Truth::kTrue;
     } else {
@@ -147,7 +147,7 @@ class Decision {
     }
     if (!good) return false;
     model_ = std::move(full);
-    exact_ = exact;
+    exact_ = *exact;
     return true;
   }
 
@@ -195,7 +195,7 @@ class Decision {
         bool good = !around.Enclosure(equation->first).IsEmpty();
         for (const TermId c : others) good = good && around.Check(c) == Truth::kTrue;
         if (!good) continue;
-        Complete(prepared, around, assignment);
+        if (!Complete(prepared, around, assignment)) continue;
         model_ = std::move(assignment);
         exact_ = false;
         return true;

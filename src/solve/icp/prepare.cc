@@ -254,6 +254,26 @@ class Preparation {
     return std::nullopt;
   }
 
+  // An equation that goes takes with it that its terms are defined; what that asks of the arguments stays.
+  void KeepDefined(TermId term, std::vector<TermId>& conjuncts) {
+    std::vector<std::pair<Elementary, TermId>> partial;
+    bool total = true;
+    std::unordered_set<TermId> seen;
+    expr::VisitPostorder(arena_, term, seen, [&](TermId t) {
+      // Of a choice, only the branch that is taken need be defined.
+      total = total && arena_.op(t) != Op::kIte;
+      if (arena_.op(t) == Op::kElementary) partial.emplace_back(arena_.elementary_of(t), arena_.arg(t, 0));
+    });
+    if (!total) return;
+    for (const auto& [function, argument] : partial) {
+      if (function == Elementary::kSqrt) conjuncts.push_back(arena_.Le(Number(Zero()), argument));
+      if (function == Elementary::kLog) conjuncts.push_back(arena_.Lt(Number(Zero()), argument));
+      if (function != Elementary::kAsin && function != Elementary::kAcos) continue;
+      conjuncts.push_back(arena_.Le(Number(Rational(-1)), argument));
+      conjuncts.push_back(arena_.Le(argument, Number(Rational(1))));
+    }
+  }
+
   // Uses equations, if there are any to use: all that give numbers at once, or one other. Then `conjuncts` is
   // what remains.
   bool Eliminate(std::vector<TermId>& conjuncts) {
@@ -273,6 +293,7 @@ class Preparation {
     if (map.empty() && other) map.insert(*other);
     if (map.empty()) return false;
     conjuncts = Conjuncts(arena_, out_);
+    for (const auto& [variable, definition] : map) KeepDefined(definition, conjuncts);
     for (TermId& c : conjuncts) c = expr::Substitute(arena_, c, map);
     for (auto& [variable, definition] : out_.definitions)
       definition = expr::Substitute(arena_, definition, map);
