@@ -169,11 +169,9 @@ class Prover {
   }
 
   void WriteFile(const Task& task, const Problem& problem, std::mutex& mutex) {
-    std::vector<expr::SmtAssertion> assertions;
-    for (const solve::Assertion& a : problem.query.assertions) assertions.push_back({a.formula, a.group});
     const std::filesystem::path path = options_.smt_out / (task.name + ".smt2");
     const auto written = base::WriteFileAtomically(
-        path, "; unsatisfiable if the obligation holds\n" + expr::ToSmtLib(*problem.query.arena, assertions));
+        path, "; unsatisfiable if the obligation holds\n" + solve::ToSmtLib(problem.query));
     if (written.ok()) return;
     const std::scoped_lock lock(mutex);
     report_.problems.push_back(fmt::format("{}: {}", path.string(), written.error().message));

@@ -2,15 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "expr/smtlib.h"
-
 namespace rondo::solve::cache {
 
 Answer CachingSolver::Check(const Query& query, const Budget& budget, const base::StopToken& stop) const {
   if (!query.wanted.empty() || !budget.core) return solver_.Check(query, budget, stop);
-  std::vector<expr::SmtAssertion> assertions;
-  for (const Assertion& a : query.assertions) assertions.push_back({a.formula, a.group});
-  const std::string question = fmt::format("; {}\n{}", name(), expr::ToSmtLib(*query.arena, assertions));
+  const std::string question = fmt::format("; {}\n{}", name(), ToSmtLib(query));
   if (const auto entry = cache_.Find(question)) {
     ++hits_;
     return Unsat{entry->core};
