@@ -24,6 +24,8 @@ enum class Kind : uint8_t {
   kSmtUndeclared,
   kSmtSort,
   kSmtUnsupported,
+  // Certificates.
+  kCertificateRejected,
   // Koord: names.
   kKoordUndeclared,
   kKoordDuplicate,

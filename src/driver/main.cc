@@ -28,6 +28,7 @@ int Main(int argc, char** argv) {
   AddFormatVerb(app, status);
   AddProveVerb(app, status);
   AddSolveVerb(app, status);
+  AddCertifyVerb(app, status);
   AddExplainVerb(app, status);
   AddAstVerb(app, status);
   AddCompletionVerb(app, status);

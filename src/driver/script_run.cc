@@ -17,10 +17,34 @@ constexpr double kFinest = 1e-9;
 /// dReal's default.
 constexpr double kDefaultPrecision = 1e-3;
 
+/// The assertions that hold between commands.
+class Levels {
+ public:
+  explicit Levels(const lang::smtlib::Script& script) : script_(script), levels_(1) {}
+
+  void Take(const Command& command) {
+    if (command.kind == Command::Kind::kAssert) levels_.back().push_back({command.terms[0], ""});
+    if (command.kind == Command::Kind::kPush) levels_.resize(levels_.size() + command.levels);
+    if (command.kind == Command::Kind::kPop) levels_.resize(levels_.size() - command.levels);
+    if (command.kind == Command::Kind::kReset) levels_.assign(1, {});
+  }
+
+  solve::Query Query() const {
+    solve::Query query{&script_.arena, {}, script_.variables};
+    for (const auto& level : levels_)
+      query.assertions.insert(query.assertions.end(), level.begin(), level.end());
+    return query;
+  }
+
+ private:
+  const lang::smtlib::Script& script_;
+  std::vector<std::vector<solve::Assertion>> levels_;
+};
+
 class Runner {
  public:
   Runner(const lang::smtlib::Script& script, const ScriptOptions& options, const base::StopToken& stop)
-      : script_(script), options_(options), stop_(stop), levels_(1) {}
+      : script_(script), options_(options), stop_(stop), levels_(script) {}
 
   ScriptOutcome Run() {
     for (const Command& command : script_.commands) {
@@ -34,16 +58,10 @@ class Runner {
   void One(const Command& command) {
     switch (command.kind) {
       case Command::Kind::kAssert:
-        levels_.back().push_back({command.terms[0], ""});
-        return;
       case Command::Kind::kPush:
-        for (size_t i = 0; i < command.levels; ++i) levels_.emplace_back();
-        return;
       case Command::Kind::kPop:
-        levels_.resize(levels_.size() - command.levels);
-        return;
       case Command::Kind::kReset:
-        levels_.assign(1, {});
+        levels_.Take(command);
         return;
       case Command::Kind::kEcho:
         outcome_.text += command.text + "\n";
@@ -67,10 +85,8 @@ class Runner {
   }
 
   void Check() {
-    solve::Query query{&script_.arena, {}, script_.variables};
-    for (const auto& level : levels_)
-      query.assertions.insert(query.assertions.end(), level.begin(), level.end());
-    solve::Budget budget{options_.timeout, false};
+    const solve::Query query = levels_.Query();
+    const solve::Budget budget{options_.timeout, false, options_.certificate};
     const Clock::time_point start = Clock::now();
     CheckOutcome check;
     if (options_.only != nullptr) {
@@ -158,7 +174,7 @@ class Runner {
   const lang::smtlib::Script& script_;
   const ScriptOptions& options_;
   const base::StopToken& stop_;
-  std::vector<std::vector<solve::Assertion>> levels_;
+  Levels levels_;
   std::map<expr::TermId, expr::Value> values_;
   ScriptOutcome outcome_;
 };
@@ -168,6 +184,17 @@ class Runner {
 ScriptOutcome RunScript(const lang::smtlib::Script& script, const ScriptOptions& options,
                         const base::StopToken& stop) {
   return Runner(script, options, stop).Run();
+}
+
+std::vector<std::string> Questions(const lang::smtlib::Script& script) {
+  std::vector<std::string> result;
+  Levels levels(script);
+  for (const Command& command : script.commands) {
+    levels.Take(command);
+    if (command.kind == Command::Kind::kCheckSat)
+      result.push_back(solve::ToSmtLib(levels.Query(), expr::SmtFunctions::kNamed));
+  }
+  return result;
 }
 
 std::string Prefixed(const std::string& text, const std::string& prefix) {

@@ -18,6 +18,7 @@ struct ScriptOptions {
   std::optional<double> precision;            ///< instead of the script's
   bool compare = false;
   bool lemmas = true;
+  bool certificate = false;
   bool want_model = false;  ///< as if `(get-model)` followed each `(check-sat)`
 };
 
@@ -38,6 +39,9 @@ struct ScriptOutcome {
 /// Runs the commands of a script that was read without errors.
 ScriptOutcome RunScript(const lang::smtlib::Script& script, const ScriptOptions& options,
                         const base::StopToken& stop);
+
+/// What each `(check-sat)` asks, as certificates begin with it.
+std::vector<std::string> Questions(const lang::smtlib::Script& script);
 
 /// `text` with `prefix` before each line.
 std::string Prefixed(const std::string& text, const std::string& prefix);

@@ -22,6 +22,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> files;
+  std::string certificate;
   std::string solver = "auto";
   unsigned jobs = 0;
   double timeout = 60;
@@ -57,6 +58,25 @@ nlohmann::json ToJson(const Item& item) {
     if (!c.reason.empty()) answers.back()["reason"] = c.reason;
   }
   return {{"file", item.path}, {"answers", answers}};
+}
+
+// Writes the certificates of all `unsat`, the second and later ones under numbered names.
+bool WriteCertificates(const std::vector<Item>& items, const std::filesystem::path& path) {
+  size_t number = 0;
+  for (const Item& item : items) {
+    for (const CheckOutcome& c : item.outcome.checks) {
+      const auto* unsat = std::get_if<solve::Unsat>(&c.report.answer);
+      if (unsat == nullptr) continue;
+      std::filesystem::path to = path;
+      if (++number > 1)
+        to.replace_filename(fmt::format("{}-{}{}", path.stem().string(), number, path.extension().string()));
+      const auto written = base::WriteFileAtomically(to, unsat->certificate);
+      if (written.ok()) continue;
+      PrintFailure(fmt::format("cannot write `{}`: {}", to.string(), written.error().message));
+      return false;
+    }
+  }
+  return true;
 }
 
 int StatusOf(const std::vector<Item>& items) {
@@ -109,7 +129,12 @@ int Run(const Options& options) {
   run.lemmas = !options.no_lemmas;
   run.want_model = options.model;
   if (options.precision > 0) run.precision = options.precision;
-  if (options.solver == "auto") run.portfolio = {&z3};
+  run.certificate = !options.certificate.empty();
+  if (run.certificate && options.solver != "auto" && options.solver != "icp") {
+    PrintFailure("only interval arithmetic writes certificates: use --cert without --solver, or with `icp`");
+    return kUsage;
+  }
+  if (options.solver == "auto" && !run.certificate) run.portfolio = {&z3};
   if (options.solver == "z3") run.only = &z3;
   if (external) run.only = &process;
   // Many scripts: one thread each. One script: all threads for it.
@@ -127,7 +152,8 @@ int Run(const Options& options) {
       line.Show(fmt::format("[{}/{}] {}", ++done, items.size(), items[i].path));
     });
   }
-  const int status = StatusOf(items);
+  int status = StatusOf(items);
+  if (run.certificate && !WriteCertificates(items, options.certificate)) status = kRejected;
   if (options.json) {
     nlohmann::json files = nlohmann::json::array();
     for (const Item& item : items) files.push_back(ToJson(item));
@@ -166,6 +192,8 @@ void AddSolveVerb(CLI::App& app, int& status) {
   verb->add_option("--precision", options->precision,
                    "the widest box that may be answered with delta-sat; default: what the script says")
       ->check(CLI::Range(1e-12, 1e3));
+  verb->add_option("--cert", options->certificate,
+                   "where to write the refutation of `unsat`, for `rondo certify`; more than one are numbered");
   verb->add_flag("--compare", options->compare, "ask every engine and compare their answers");
   verb->add_flag("--no-lemmas", options->no_lemmas, "do not look for rotations, to measure what they bring");
   verb->add_flag("--model", options->model, "print values of the variables after `sat`");

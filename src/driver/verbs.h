@@ -12,6 +12,7 @@ void AddFormatVerb(CLI::App& app, int& status);
 void AddAstVerb(CLI::App& app, int& status);
 void AddProveVerb(CLI::App& app, int& status);
 void AddSolveVerb(CLI::App& app, int& status);
+void AddCertifyVerb(CLI::App& app, int& status);
 void AddExplainVerb(CLI::App& app, int& status);
 void AddCompletionVerb(CLI::App& app, int& status);
 

@@ -27,114 +27,108 @@ std::string NumberText(const Arena& arena, TermId t) {
   return negative ? fmt::format("(- {})", text) : text;
 }
 
-class Printer {
- public:
-  explicit Printer(const Arena& arena) : arena_(arena) {}
+}  // namespace
 
-  std::string SortName(SortId id) const {
-    const Sort& s = arena_.sort(id);
-    if (s.kind == SortKind::kArray)
-      return fmt::format("(Array {} {})", SortName(s.parts[0]), SortName(s.parts[1]));
-    if (s.kind == SortKind::kBool || s.kind == SortKind::kInt || s.kind == SortKind::kReal) return s.name;
-    return Quote("sort " + s.name);
+std::string SmtPrinter::SortName(SortId id) const {
+  const Sort& s = arena_.sort(id);
+  if (s.kind == SortKind::kArray)
+    return fmt::format("(Array {} {})", SortName(s.parts[0]), SortName(s.parts[1]));
+  if (s.kind == SortKind::kBool || s.kind == SortKind::kInt || s.kind == SortKind::kReal) return s.name;
+  return Quote("sort " + s.name);
+}
+
+std::string SmtPrinter::FieldName(SortId record, uint32_t field) const {
+  const Sort& s = arena_.sort(record);
+  return Quote(fmt::format("{}.{}", s.name, s.names[field]));
+}
+
+std::string SmtPrinter::Print(TermId t, bool definition) const {
+  if (!definition) {
+    if (const auto it = names_.find(t); it != names_.end()) return it->second;
   }
-
-  std::string FieldName(SortId record, uint32_t field) const {
-    const Sort& s = arena_.sort(record);
-    return Quote(fmt::format("{}.{}", s.name, s.names[field]));
-  }
-
-  void Define(TermId t, std::string name) { names_[t] = std::move(name); }
-
-  std::string Print(TermId t, bool definition = false) const {
-    if (!definition) {
-      if (const auto it = names_.find(t); it != names_.end()) return it->second;
+  const Term& term = arena_.term(t);
+  const auto args = arena_.args(t);
+  const auto call = [&](std::string_view head) {
+    std::string text = fmt::format("({}", head);
+    for (const TermId arg : args) text += " " + Print(arg);
+    return text + ")";
+  };
+  switch (term.op) {
+    case Op::kBool:
+      return t == arena_.True() ? "true" : "false";
+    case Op::kNumber:
+      return NumberText(arena_, t);
+    case Op::kMember: {
+      const Sort& s = arena_.sort(term.sort);
+      return Quote(fmt::format("{}.{}", s.name, s.names[term.payload]));
     }
-    const Term& term = arena_.term(t);
-    const auto args = arena_.args(t);
-    const auto call = [&](std::string_view head) {
-      std::string text = fmt::format("({}", head);
-      for (const TermId arg : args) text += " " + Print(arg);
-      return text + ")";
-    };
-    switch (term.op) {
-      case Op::kBool:
-        return t == arena_.True() ? "true" : "false";
-      case Op::kNumber:
-        return NumberText(arena_, t);
-      case Op::kMember: {
-        const Sort& s = arena_.sort(term.sort);
-        return Quote(fmt::format("{}.{}", s.name, s.names[term.payload]));
-      }
-      case Op::kVariable:
-        return Quote(arena_.symbol(SymbolId(term.payload)).name);
-      case Op::kApply:
-        return call(Quote(arena_.symbol(SymbolId(term.payload)).name));
-      case Op::kNot:
-      case Op::kAnd:
-      case Op::kOr:
-      case Op::kEq:
-      case Op::kIte:
-      case Op::kAdd:
-      case Op::kMul:
-      case Op::kDivide:
-      case Op::kIntDiv:
-      case Op::kMod:
-      case Op::kLe:
-      case Op::kLt:
-      case Op::kToReal:
-      case Op::kSelect:
-      case Op::kStore:
-        return call(Name(term.op));
-      case Op::kElementary: {
-        const auto function = static_cast<Elementary>(term.payload);
-        // These have no names in SMT-LIB that all solvers know.
-        const auto choose = [&](std::string_view relation, const std::string& a, const std::string& b) {
-          return fmt::format("(ite ({} {} {}) {} {})", relation, a, b, a, b);
-        };
-        const std::string first = Print(args[0]);
-        if (function == Elementary::kAbs)
-          return fmt::format("(ite (<= 0.0 {}) {} (- {}))", first, first, first);
-        if (function == Elementary::kMin) return choose("<=", first, Print(args[1]));
-        if (function == Elementary::kMax) return choose(">=", first, Print(args[1]));
-        return call(Name(function));
-      }
-      case Op::kForall:
-      case Op::kExists: {
-        std::string text = fmt::format("({} (", Name(term.op));
-        for (size_t i = 0; i < term.payload; ++i) {
-          text +=
-              fmt::format("{}({} {})", i == 0 ? "" : " ", Print(args[i]), SortName(arena_.sort_of(args[i])));
-        }
-        return text + fmt::format(") {})", Print(args.back()));
-      }
-      case Op::kRecord:
-        return call(Quote("make " + arena_.sort(term.sort).name));
-      case Op::kField:
-        return call(FieldName(arena_.sort_of(args[0]), term.payload));
-      case Op::kListMake: {
-        const std::string name = Quote(ListFunctionName(arena_, term.op, term.sort, args.size()));
-        return args.empty() ? name : call(name);
-      }
-      case Op::kListLength:
-      case Op::kListAt:
-      case Op::kListAppend:
-      case Op::kListRemove:
-      case Op::kListSet:
-        return call(Quote(ListFunctionName(arena_, term.op, arena_.sort_of(args[0]), args.size())));
+    case Op::kVariable:
+      return Quote(arena_.symbol(SymbolId(term.payload)).name);
+    case Op::kApply:
+      return call(Quote(arena_.symbol(SymbolId(term.payload)).name));
+    case Op::kNot:
+    case Op::kAnd:
+    case Op::kOr:
+    case Op::kEq:
+    case Op::kIte:
+    case Op::kAdd:
+    case Op::kMul:
+    case Op::kDivide:
+    case Op::kIntDiv:
+    case Op::kMod:
+    case Op::kLe:
+    case Op::kLt:
+    case Op::kToReal:
+    case Op::kSelect:
+    case Op::kStore:
+      return call(Name(term.op));
+    case Op::kElementary: {
+      const auto function = static_cast<Elementary>(term.payload);
+      // These have no names in SMT-LIB that all solvers know.
+      const auto choose = [&](std::string_view relation, const std::string& a, const std::string& b) {
+        return fmt::format("(ite ({} {} {}) {} {})", relation, a, b, a, b);
+      };
+      if (functions_ == SmtFunctions::kNamed) return call(Name(function));
+      const std::string first = Print(args[0]);
+      if (function == Elementary::kAbs)
+        return fmt::format("(ite (<= 0.0 {}) {} (- {}))", first, first, first);
+      if (function == Elementary::kMin) return choose("<=", first, Print(args[1]));
+      if (function == Elementary::kMax) return choose(">=", first, Print(args[1]));
+      return call(Name(function));
     }
-    return "";
+    case Op::kForall:
+    case Op::kExists: {
+      std::string text = fmt::format("({} (", Name(term.op));
+      for (size_t i = 0; i < term.payload; ++i) {
+        text +=
+            fmt::format("{}({} {})", i == 0 ? "" : " ", Print(args[i]), SortName(arena_.sort_of(args[i])));
+      }
+      return text + fmt::format(") {})", Print(args.back()));
+    }
+    case Op::kRecord:
+      return call(Quote("make " + arena_.sort(term.sort).name));
+    case Op::kField:
+      return call(FieldName(arena_.sort_of(args[0]), term.payload));
+    case Op::kListMake: {
+      const std::string name = Quote(ListFunctionName(arena_, term.op, term.sort, args.size()));
+      return args.empty() ? name : call(name);
+    }
+    case Op::kListLength:
+    case Op::kListAt:
+    case Op::kListAppend:
+    case Op::kListRemove:
+    case Op::kListSet:
+      return call(Quote(ListFunctionName(arena_, term.op, arena_.sort_of(args[0]), args.size())));
   }
+  return "";
+}
 
- private:
-  const Arena& arena_;
-  std::unordered_map<TermId, std::string> names_;
-};
+namespace {
 
 // Writes the declarations that the terms need, each before its first use.
 class Declarations {
  public:
-  Declarations(const Arena& arena, const Printer& printer) : arena_(arena), printer_(printer) {}
+  Declarations(const Arena& arena, const SmtPrinter& printer) : arena_(arena), printer_(printer) {}
 
   void Need(TermId t) {
     const Term& term = arena_.term(t);
@@ -220,7 +214,7 @@ class Declarations {
   }
 
   const Arena& arena_;
-  const Printer& printer_;
+  const SmtPrinter& printer_;
   std::unordered_set<SortId> sorts_;
   std::unordered_set<std::string> symbols_;
   std::string text_;
@@ -233,10 +227,10 @@ std::string ListFunctionName(const Arena& arena, Op op, SortId list, size_t arit
   return op == Op::kListMake ? fmt::format("list{}<{}>", arity, name) : fmt::format("{}<{}>", Name(op), name);
 }
 
-std::string ToSmtLib(const Arena& arena, TermId term) { return Printer(arena).Print(term); }
+std::string ToSmtLib(const Arena& arena, TermId term) { return SmtPrinter(arena).Print(term); }
 
-std::string ToSmtLib(const Arena& arena, std::span<const SmtAssertion> assertions) {
-  Printer printer(arena);
+std::string ToSmtLib(const Arena& arena, std::span<const SmtAssertion> assertions, SmtFunctions functions) {
+  SmtPrinter printer(arena, functions);
   Declarations declarations(arena, printer);
   std::unordered_set<TermId> seen;
   std::vector<TermId> order;

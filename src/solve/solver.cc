@@ -1,13 +1,11 @@
 #include "solve/solver.h"
 
-#include "expr/smtlib.h"
-
 namespace rondo::solve {
 
-std::string ToSmtLib(const Query& query) {
+std::string ToSmtLib(const Query& query, expr::SmtFunctions functions) {
   std::vector<expr::SmtAssertion> assertions;
   for (const Assertion& a : query.assertions) assertions.push_back({a.formula, a.group});
-  return expr::ToSmtLib(*query.arena, assertions);
+  return expr::ToSmtLib(*query.arena, assertions, functions);
 }
 
 }  // namespace rondo::solve

@@ -10,6 +10,7 @@
 
 #include "base/stop.h"
 #include "expr/arena.h"
+#include "expr/smtlib.h"
 #include "expr/value.h"
 
 /// One question, several engines: is there an interpretation that satisfies all assertions?
@@ -31,12 +32,14 @@ struct Query {
 };
 
 /// The assertions as an SMT-LIB 2 script, groups as comments.
-std::string ToSmtLib(const Query& query);
+std::string ToSmtLib(const Query& query, expr::SmtFunctions functions = expr::SmtFunctions::kSpelledOut);
 
 /// No interpretation satisfies the assertions.
 struct Unsat {
   std::vector<std::string>
       core;  ///< groups that the engine's refutation used; a superset of what is necessary
+  /// The script of the query and its refutation, as `solve/certify` reads it. Empty: the engine writes none.
+  std::string certificate{};
 };
 
 /// The engine found an interpretation; values of the wanted terms that it could evaluate.
@@ -61,7 +64,8 @@ using Answer = std::variant<Unsat, Sat, DeltaSat, Unknown>;
 
 struct Budget {
   std::chrono::milliseconds time{10'000};
-  bool core = true;  ///< compute a core when unsatisfiable
+  bool core = true;          ///< compute a core when unsatisfiable
+  bool certificate = false;  ///< write a certificate when unsatisfiable
 };
 
 /// Thread-safe: one object may serve several threads, each call is independent. Errors of the engine are

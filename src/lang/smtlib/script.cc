@@ -4,8 +4,6 @@
 
 #include <set>
 
-#include "lang/smtlib/term_reader.h"
-
 namespace rondo::lang::smtlib {
 namespace {
 
@@ -15,8 +13,12 @@ using expr::TermId;
 
 class ScriptReader {
  public:
-  ScriptReader(Script& script, diag::Diagnostics& diagnostics)
-      : script_(script), arena_(script.arena), diagnostics_(diagnostics), terms_(script.arena, diagnostics) {}
+  ScriptReader(Script& script, diag::Diagnostics& diagnostics, const Extension& extension)
+      : script_(script),
+        arena_(script.arena),
+        diagnostics_(diagnostics),
+        extension_(extension),
+        terms_(script.arena, diagnostics) {}
 
   // False at the end of the script.
   bool Read(const SExpr& e) {
@@ -48,6 +50,7 @@ class ScriptReader {
     if (head == "exit") return false;
     const auto it = kCommands.find(head);
     if (it == kCommands.end()) {
+      if (extension_ && extension_(e, terms_)) return true;
       diagnostics_.Report(Kind::kSmtUnsupported, e.items[0].span,
                           fmt::format("the command `{}` is not supported", head));
       return true;
@@ -130,6 +133,13 @@ class ScriptReader {
     }
     const auto result = terms_.ReadSort(e.items[fun ? 3 : 2]);
     if (!result || !New(e.items[1])) return;
+    // Without parameters it is a name for a term.
+    if (macro.parameters.empty()) {
+      const SExpr& body = e.items.back();
+      const TermId value = terms_.As(terms_.Read(body), *result, body);
+      if (value.valid()) terms_.Declare(e.items[1], value);
+      return;
+    }
     macro.result = *result;
     macro.body = e.items.back();
     terms_.Define(e.items[1], std::move(macro));
@@ -195,6 +205,7 @@ class ScriptReader {
   Script& script_;
   expr::Arena& arena_;
   diag::Diagnostics& diagnostics_;
+  const Extension& extension_;
   TermReader terms_;
   std::set<std::string> names_;
   size_t depth_ = 0;
@@ -203,9 +214,9 @@ class ScriptReader {
 }  // namespace
 
 void ReadScript(const diag::SourceSet& sources, diag::FileId file, Script& script,
-                diag::Diagnostics& diagnostics) {
+                diag::Diagnostics& diagnostics, const Extension& extension) {
   const std::vector<SExpr> commands = ReadSExprs(sources, file, diagnostics);
-  ScriptReader reader(script, diagnostics);
+  ScriptReader reader(script, diagnostics, extension);
   for (const SExpr& command : commands) {
     if (!reader.Read(command)) break;
   }

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "diag/diagnostic.h"
 #include "expr/arena.h"
+#include "lang/smtlib/term_reader.h"
 
 /// SMT-LIB 2 scripts of nonlinear real arithmetic, in the dialect of dReal: elementary functions, bounds in
 /// declarations, `:precision`, numbers with a sign.
@@ -27,9 +29,12 @@ struct Script {
   std::optional<expr::Rational> precision;  ///< of `(set-option :precision p)`
 };
 
+/// Reads a command that is none of SMT-LIB's; false: it does not know it either.
+using Extension = std::function<bool(const SExpr& command, TermReader& terms)>;
+
 /// Reads a script. Everything that is wrong is reported; then the script must not be run. Declarations and
 /// definitions are global: `pop` does not remove them.
 void ReadScript(const diag::SourceSet& sources, diag::FileId file, Script& script,
-                diag::Diagnostics& diagnostics);
+                diag::Diagnostics& diagnostics, const Extension& extension = {});
 
 }  // namespace rondo::lang::smtlib

@@ -7,6 +7,7 @@
 #include "expr/substitute.h"
 #include "solve/icp/contractor.h"
 #include "solve/icp/point.h"
+#include "solve/icp/proof.h"
 #include "solve/icp/search.h"
 
 namespace rondo::solve::icp {
@@ -17,8 +18,15 @@ using expr::Op;
 /// Decides one lowered query by cases.
 class Decision {
  public:
-  Decision(Lowered& lowered, const Options& options, const base::StopToken& stop, Statistics& statistics)
-      : lowered_(lowered), arena_(lowered.arena), options_(options), stop_(stop), statistics_(statistics) {
+  Decision(Lowered& lowered, const Options& options, const base::StopToken& stop, Statistics& statistics,
+           Proof* proof)
+      : lowered_(lowered),
+        arena_(lowered.arena),
+        options_(options),
+        stop_(stop),
+        statistics_(statistics),
+        proof_(proof) {
+    search_.record_tree = proof != nullptr;
     search_.jobs = options.jobs;
     search_.precision = options.precision;
     search_.stop = stop;
@@ -39,9 +47,10 @@ class Decision {
 
   Status Decide(std::vector<TermId> conjuncts, const Definitions& definitions) {
     if (stop_.StopRequested()) return Status::kGaveUp;
-    const Prepared prepared = Prepare(arena_, lowered_.variables, std::move(conjuncts), definitions);
+    const Prepared prepared = Prepare(arena_, lowered_.variables, std::move(conjuncts), definitions, proof_);
     if (prepared.contradiction) {
       ++statistics_.exact;
+      if (proof_ != nullptr) proof_->Contradiction();
       return Status::kUnsat;
     }
     Prepared rotated = prepared;
@@ -58,6 +67,7 @@ class Decision {
     statistics_.boxes += result.boxes;
     switch (result.kind) {
       case SearchResult::Kind::kEmpty:
+        if (proof_ != nullptr) WriteSearch(rotated, tape, result.tree);
         return Status::kUnsat;
       case SearchResult::Kind::kPoint:
       case SearchResult::Kind::kBox:
@@ -74,6 +84,27 @@ class Decision {
     return Status::kUndecided;
   }
 
+  void WriteSearch(const Prepared& prepared, const Tape& tape, const std::vector<TreeNode>& tree) {
+    for (const TermId c : Conjuncts(arena_, prepared)) proof_->Fact(Normalised(arena_, c));
+    for (const TermId l : prepared.lemmas) proof_->Fact(Normalised(arena_, l));
+    std::vector<TermId> variables;
+    for (const TapeVariable& v : tape.variables) variables.push_back(v.term);
+    std::string text;
+    std::vector<uint32_t> open{0};
+    while (!open.empty()) {
+      const TreeNode node = open.back() < tree.size() ? tree[open.back()] : TreeNode{};
+      open.pop_back();
+      if (!text.empty()) text += text.size() % 100 < 90 ? " " : "\n";
+      if (node.first_child == 0) {
+        text += ".";
+        continue;
+      }
+      text += fmt::format("{} {}", node.variable, node.value);
+      open.insert(open.end(), {node.first_child + 1, node.first_child});
+    }
+    proof_->Search(variables, text);
+  }
+
   // One of the alternatives of one disjunction must hold.
   Status Cases(const Prepared& prepared) {
     const auto smallest =
@@ -84,7 +115,9 @@ class Decision {
     const auto args = arena_.args(*smallest);
     const std::vector<TermId> alternatives(args.begin(), args.end());
     Status status = Status::kUnsat;
+    if (proof_ != nullptr) proof_->Cases(*smallest);
     for (const TermId alternative : alternatives) {
+      if (proof_ != nullptr) proof_->Case(alternative);
       std::vector<TermId> conjuncts = rest;
       conjuncts.push_back(alternative);
       const Status s = Decide(std::move(conjuncts), prepared.definitions);
@@ -92,6 +125,7 @@ class Decision {
       if (s == Status::kGaveUp || status == Status::kUnsat) status = s;
       if (s == Status::kGaveUp && stop_.StopRequested()) return s;
     }
+    if (proof_ != nullptr) proof_->End();
     return status;
   }
 
@@ -222,6 +256,7 @@ class Decision {
   const Options& options_;
   const base::StopToken& stop_;
   Statistics& statistics_;
+  Proof* proof_;
   SearchOptions search_;
   Assignment model_;
   bool exact_ = true;
@@ -258,13 +293,16 @@ Answer IcpSolver::Check(const Query& query, const Budget& budget, const base::St
   if (!lowered.unsupported.empty())
     return Unknown{fmt::format("no interval arithmetic for {}", lowered.unsupported)};
   const base::StopToken limited = stop.WithDeadline(base::StopToken::Clock::now() + budget.time);
-  Decision decision(lowered, options_, limited, statistics);
+  std::optional<Proof> proof;
+  if (budget.certificate) proof.emplace(lowered);
+  Decision decision(lowered, options_, limited, statistics, proof ? &*proof : nullptr);
   switch (decision.Run()) {
     case Decision::Status::kUnsat: {
       Unsat unsat;
       for (const Assertion& a : query.assertions) {
         if (!a.group.empty()) unsat.core.push_back(a.group);
       }
+      if (proof) unsat.certificate = ToSmtLib(query, expr::SmtFunctions::kNamed) + proof->text();
       std::sort(unsat.core.begin(), unsat.core.end());
       unsat.core.erase(std::unique(unsat.core.begin(), unsat.core.end()), unsat.core.end());
       return unsat;

@@ -87,4 +87,15 @@ TermId ToFormula(expr::Arena& arena, const Literal& literal) {
   }
 }
 
+TermId Normalised(expr::Arena& arena, TermId formula) {
+  const Op op = arena.op(formula);
+  if (op == Op::kAnd || op == Op::kOr) {
+    std::vector<TermId> parts(arena.args(formula).begin(), arena.args(formula).end());
+    for (TermId& part : parts) part = Normalised(arena, part);
+    return op == Op::kAnd ? arena.And(parts) : arena.Or(parts);
+  }
+  const auto literal = AsLiteral(arena, formula);
+  return literal && !arena.IsNumber(literal->term) ? ToFormula(arena, *literal) : formula;
+}
+
 }  // namespace rondo::solve::icp

@@ -29,6 +29,9 @@ std::optional<Literal> AsLiteral(expr::Arena& arena, TermId formula);
 /// The comparison as a formula.
 TermId ToFormula(expr::Arena& arena, const Literal& literal);
 
+/// The formula with every comparison as AsLiteral sees it.
+TermId Normalised(expr::Arena& arena, TermId formula);
+
 /// Does `a relation b` hold?
 bool Holds(const Rational& a, Relation relation, const Rational& b);
 

@@ -54,8 +54,8 @@ namespace {
 
 class Preparation {
  public:
-  Preparation(Arena& arena, const std::unordered_map<TermId, Variable>& variables, Prepared& out)
-      : arena_(arena), variables_(variables), out_(out) {}
+  Preparation(Arena& arena, const std::unordered_map<TermId, Variable>& variables, Prepared& out, Proof* proof)
+      : arena_(arena), variables_(variables), out_(out), proof_(proof) {}
 
   void Run(std::vector<TermId> conjuncts) {
     while (true) {
@@ -212,6 +212,7 @@ class Preparation {
     } else if (!square_of(literal.term)) {
       return false;
     }
+    if (proof_ != nullptr) proof_->Squares(ToFormula(arena_, literal));
     if (literal.bound < Zero() || (literal.relation & kEqual) == 0) {
       out_.contradiction = true;
       return true;
@@ -293,7 +294,10 @@ class Preparation {
     if (map.empty() && other) map.insert(*other);
     if (map.empty()) return false;
     conjuncts = Conjuncts(arena_, out_);
-    for (const auto& [variable, definition] : map) KeepDefined(definition, conjuncts);
+    for (const auto& [variable, definition] : map) {
+      KeepDefined(definition, conjuncts);
+      if (proof_ != nullptr) proof_->Substitute(variable, definition);
+    }
     for (TermId& c : conjuncts) c = expr::Substitute(arena_, c, map);
     for (auto& [variable, definition] : out_.definitions)
       definition = expr::Substitute(arena_, definition, map);
@@ -304,6 +308,7 @@ class Preparation {
   Arena& arena_;
   const std::unordered_map<TermId, Variable>& variables_;
   Prepared& out_;
+  Proof* proof_;
   std::vector<TermId> todo_;
   std::unordered_map<TermId, TermId> condensed_;  // by Condense; its results are taken as they are
 };
@@ -311,10 +316,11 @@ class Preparation {
 }  // namespace
 
 Prepared Prepare(Arena& arena, const std::unordered_map<TermId, Variable>& variables,
-                 std::vector<TermId> conjuncts, std::vector<std::pair<TermId, TermId>> definitions) {
+                 std::vector<TermId> conjuncts, std::vector<std::pair<TermId, TermId>> definitions,
+                 Proof* proof) {
   Prepared result;
   result.definitions = std::move(definitions);
-  Preparation(arena, variables, result).Run(std::move(conjuncts));
+  Preparation(arena, variables, result, proof).Run(std::move(conjuncts));
   return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include "solve/icp/literal.h"
 #include "solve/icp/lower.h"
+#include "solve/icp/proof.h"
 
 namespace rondo::solve::icp {
 
@@ -39,9 +40,11 @@ struct Prepared {
 /// Equivalent to the conjunction of `conjuncts`, up to the definitions: every solution of the result extends
 /// to one of the conjuncts by the definitions, and every solution of the conjuncts arises so. Uses linear
 /// equations to eliminate variables, turns bounds of square roots into bounds of their arguments, splits
-/// vanishing sums of squares, and merges all comparisons of one term; everything in exact arithmetic.
+/// vanishing sums of squares, and merges all comparisons of one term; everything in exact arithmetic. `proof`,
+/// if there is one, gets the steps that a checker cannot see by itself.
 Prepared Prepare(expr::Arena& arena, const std::unordered_map<TermId, Variable>& variables,
-                 std::vector<TermId> conjuncts, std::vector<std::pair<TermId, TermId>> definitions);
+                 std::vector<TermId> conjuncts, std::vector<std::pair<TermId, TermId>> definitions,
+                 Proof* proof = nullptr);
 
 /// Rewrites the sums in `prepared` over rotated frames and adds their lemmas; see Rotations.
 void AddRotations(expr::Arena& arena, Prepared& prepared);

@@ -1,0 +1,107 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "driver/exit_status.h"
+#include "driver/interrupt.h"
+#include "driver/load.h"
+#include "driver/script_run.h"
+#include "driver/terminal.h"
+#include "driver/verbs.h"
+#include "solve/certify/checker.h"
+
+namespace rondo::driver {
+namespace {
+
+struct Options {
+  std::vector<std::string> files;
+  std::string script;
+  bool json = false;
+};
+
+std::optional<diag::FileId> Read(const std::string& path, Session& session) {
+  auto text = base::ReadFile(path);
+  if (text.ok()) return session.sources.Add(path, std::move(text).value());
+  PrintFailure(fmt::format("cannot read `{}`: {}", path, text.error().message));
+  return std::nullopt;
+}
+
+int Run(const Options& options) {
+  Session session;
+  std::vector<std::string> questions;
+  if (!options.script.empty()) {
+    const auto file = Read(options.script, session);
+    if (!file) return kRejected;
+    lang::smtlib::Script script;
+    lang::smtlib::ReadScript(session.sources, *file, script, session.diagnostics);
+    if (!session.diagnostics.has_errors()) questions = Questions(script);
+  }
+  base::StopToken stop;
+  const InterruptScope interrupt(stop);
+  nlohmann::json list = nlohmann::json::array();
+  std::string text;
+  bool readable = true;
+  bool stopped = false;
+  for (const std::string& path : options.files) {
+    const auto file = Read(path, session);
+    readable = readable && file;
+    if (!file) continue;
+    const size_t before = session.diagnostics.errors();
+    solve::certify::Certificate certificate;
+    solve::certify::ReadCertificate(session.sources, *file, certificate, session.diagnostics);
+    solve::certify::Tally tally;
+    if (session.diagnostics.errors() == before)
+      tally = solve::certify::Check(certificate, session.diagnostics, stop);
+    stopped = stopped || tally.stopped;
+    const std::string_view whole = session.sources.text(*file);
+    const bool other = !options.script.empty() && std::ranges::none_of(questions, [&](const std::string& q) {
+      return whole.starts_with(q);
+    });
+    if (other) {
+      session.diagnostics.Report(diag::Kind::kCertificateRejected, {*file, 0, 1},
+                                 fmt::format("`{}` asks something else", options.script));
+    }
+    const bool accepted = session.diagnostics.errors() == before && !tally.stopped;
+    list.push_back({{"file", path},
+                    {"accepted", accepted},
+                    {"assertions", tally.assertions},
+                    {"cases", tally.cases},
+                    {"boxes", tally.boxes}});
+    if (!accepted) continue;
+    text += fmt::format("{}: accepted: the {} assertions have no common solution ({} cases, {} boxes)\n", path,
+                        tally.assertions, tally.cases, tally.boxes);
+  }
+  const bool good = readable && !session.diagnostics.has_errors() && !stopped;
+  if (options.json) {
+    nlohmann::json diagnostics = nlohmann::json::array();
+    for (const diag::Diagnostic& d : session.diagnostics.Sorted())
+      diagnostics.push_back(diag::RenderJson(session.sources, d));
+    PrintJson({{"command", "certify"}, {"ok", good}, {"files", list}, {"diagnostics", diagnostics}});
+  } else {
+    Print(text);
+    PrintDiagnostics(session.sources, session.diagnostics);
+  }
+  if (stopped && !session.diagnostics.has_errors()) return kUndecided;
+  return good ? kEstablished : kRejected;
+}
+
+}  // namespace
+
+void AddCertifyVerb(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("certify", "check refutations that `rondo solve --cert` wrote");
+  verb->add_option("FILE", options->files, "certificates: a script and its refutation")->required();
+  verb->add_option("--of", options->script, "the script that the certificate should be about");
+  verb->add_flag("--json", options->json, "the result as JSON on standard output");
+  verb->footer(
+      "example: rondo solve --cert it.cert examples/smt/rectangles.smt2\n"
+      "         rondo certify --of examples/smt/rectangles.smt2 it.cert\n\n"
+      "The checker shares no code with the search: it has normal forms and interval arithmetic (MPFR) of its own.\n"
+      "exit status: 0 every certificate is accepted, 1 one is not, 3 interrupted");
+  verb->callback([options, &status] { status = Run(*options); });
+}
+
+}  // namespace rondo::driver

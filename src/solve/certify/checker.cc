@@ -1,0 +1,241 @@
+#include "solve/certify/checker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "solve/certify/facts.h"
+#include "solve/certify/propagator.h"
+
+namespace rondo::solve::certify {
+namespace {
+
+using expr::Op;
+using lang::smtlib::Command;
+
+constexpr int kSweeps = 3;       // for a box that is split
+constexpr int kLeafSweeps = 60;  // for a box that must turn out empty
+
+struct Stopped {};
+
+/// The words of a tree.
+class Words {
+ public:
+  explicit Words(std::string_view text) : text_(text) {}
+  std::string_view Next() {
+    at_ = std::min(text_.find_first_not_of(" \n\t\r", at_), text_.size());
+    const size_t end = std::min(text_.find_first_of(" \n\t\r", at_), text_.size());
+    const std::string_view word = text_.substr(at_, end - at_);
+    at_ = end;
+    return word;
+  }
+
+ private:
+  std::string_view text_;
+  size_t at_ = 0;
+};
+
+class Checker {
+ public:
+  Checker(const Certificate& certificate, const base::StopToken& stop)
+      : certificate_(certificate), arena_(certificate.script.arena), stop_(stop), normal_(arena_) {}
+
+  void Run(Tally& tally) {
+    Branch root{Facts(normal_), {}, {}, FormulaId()};
+    for (const expr::TermId v : certificate_.script.variables) {
+      if (arena_.sort_of(v) != arena_.Bool()) continue;
+      const Poly x{{Monomial{normal_.Variable(v)}, Rational(1)}};
+      root.facts.Add(normal_.Literal(x, kAbove | kEven));
+      root.facts.Add(normal_.Literal(Normal::Minus(x, Normal::ConstantPoly(Rational(1))), kBelow | kEven));
+    }
+    for (const Command& c : certificate_.script.commands) {
+      if (c.kind == Command::Kind::kCheckSat) continue;
+      at = c.span;
+      if (c.kind != Command::Kind::kAssert) throw Rejection("a certificate has no such command");
+      root.facts.Add(normal_.Of(c.terms[0]));
+      ++tally.assertions;
+    }
+    open_.push_back(std::move(root));
+    for (const Step& step : certificate_.steps) {
+      at = step.span;
+      if (stop_.StopRequested()) throw Stopped{};
+      if (open_.empty()) throw Rejection("the proof has ended before this step");
+      Take(step, tally);
+    }
+    if (!open_.empty()) throw Rejection("the proof ends here, with a case that is not closed");
+  }
+
+  diag::Span at;
+
+ private:
+  /// A case: what is known in it, and, once it is split, the alternatives that are still open.
+  struct Branch {
+    Facts facts;
+    std::vector<expr::TermId> required;  // for searches
+    std::optional<std::set<FormulaId>> open;
+    FormulaId assumed;
+  };
+
+  void Take(const Step& step, Tally& tally) {
+    Branch& branch = open_.back();
+    if (branch.open.has_value() != (step.kind == Step::Kind::kCase || step.kind == Step::Kind::kEnd))
+      throw Rejection(branch.open ? "`case` or `end` should stand here" : "no cases are open here");
+    switch (step.kind) {
+      case Step::Kind::kCase: {
+        Branch next{branch.facts, branch.required, std::nullopt, normal_.Of(step.terms[0])};
+        next.facts.Add(next.assumed);
+        open_.push_back(std::move(next));
+        return;
+      }
+      case Step::Kind::kEnd:
+        if (!branch.open->empty()) throw Rejection("an alternative is missing");
+        break;
+      case Step::Kind::kSubstitute: {
+        if (arena_.op(step.terms[0]) != Op::kVariable) throw Rejection("only variables are substituted");
+        const AtomId variable = normal_.Variable(step.terms[0]);
+        branch.facts.Substitute(variable, normal_.Number(step.terms[1]));
+        return;
+      }
+      case Step::Kind::kSquares:
+        Require(branch, step.terms[0]);
+        return Squares(branch.facts, step.terms[0]);
+      case Step::Kind::kFact:
+        Require(branch, step.terms[0]);
+        branch.required.push_back(step.terms[0]);
+        return;
+      case Step::Kind::kCases:
+        return Cases(branch, step.terms[0]);
+      case Step::Kind::kContradiction:
+        if (!branch.facts.contradiction()) throw Rejection("no contradiction is known here");
+        break;
+      case Step::Kind::kSearch:
+        Search(branch, step, tally);
+        break;
+    }
+    if (step.kind != Step::Kind::kEnd) ++tally.cases;
+    const FormulaId closed = branch.assumed;
+    open_.pop_back();
+    if (!open_.empty()) open_.back().open->erase(closed);
+  }
+
+  void Require(const Branch& branch, expr::TermId formula) {
+    if (!branch.facts.Known(normal_.Of(formula))) throw Rejection("this does not follow from what is known");
+    if (!normal_.Faithful(formula))
+      throw Rejection("this says that something is defined, which does not follow from what is known");
+  }
+
+  void Cases(Branch& branch, expr::TermId formula) {
+    const FormulaId id = normal_.Of(formula);
+    if (!branch.facts.Known(id)) throw Rejection("this disjunction is not known");
+    if (arena_.op(formula) != Op::kOr) throw Rejection("only disjunctions have cases");
+    branch.open.emplace();
+    for (const expr::TermId a : arena_.args(formula)) {
+      const FormulaId alternative = normal_.Of(a);
+      if (normal_.formula(alternative).kind != Formula::Kind::kFalse) branch.open->insert(alternative);
+    }
+  }
+
+  // c1 r1 r1 + ... <= b with b <= 0 < ci.
+  void Squares(Facts& facts, expr::TermId formula) {
+    const Op op = arena_.op(formula);
+    if (op != Op::kLe && op != Op::kLt && op != Op::kEq) throw Rejection("a sum of squares should be at most 0");
+    const bool swapped = op == Op::kEq && arena_.IsNumber(arena_.arg(formula, 0));
+    const expr::TermId sum = arena_.arg(formula, swapped ? 1 : 0);
+    const expr::TermId bound = arena_.arg(formula, swapped ? 0 : 1);
+    if (!arena_.IsNumber(bound) || arena_.number(bound) > Rational(0))
+      throw Rejection("a sum of squares should be at most 0");
+    std::vector<expr::TermId> summands{sum};
+    if (arena_.op(sum) == Op::kAdd) summands.assign(arena_.args(sum).begin(), arena_.args(sum).end());
+    const bool none = arena_.number(bound) < Rational(0) || op == Op::kLt;
+    for (expr::TermId t : summands) {
+      if (arena_.op(t) == Op::kMul && arena_.IsNumber(arena_.arg(t, 0))) {
+        if (arena_.number(arena_.arg(t, 0)) < Rational(0)) throw Rejection("a square is subtracted");
+        t = arena_.arg(t, 1);
+      }
+      if (arena_.op(t) != Op::kMul || arena_.arg(t, 0) != arena_.arg(t, 1)) throw Rejection("a summand is no square");
+      facts.Add(normal_.Literal(normal_.poly(normal_.Number(arena_.arg(t, 0))), kEven));
+    }
+    if (none) facts.Add(normal_.Literal({}, kBelow));
+  }
+
+  void Search(const Branch& branch, const Step& step, Tally& tally) {
+    Propagator propagator(arena_);
+    for (const expr::TermId f : branch.required) propagator.Require(f);
+    std::vector<size_t> places;
+    for (const expr::TermId v : step.terms) {
+      const auto& all = propagator.variables();
+      const auto it = std::ranges::find(all, v);
+      if (it == all.end()) throw Rejection("a variable of the search occurs in no fact");
+      places.push_back(static_cast<size_t>(it - all.begin()));
+    }
+    Words words(step.text);
+    std::vector<Box> open(1, Box(propagator.variables().size()));
+    uint64_t number = 0;
+    while (!open.empty()) {
+      if (stop_.StopRequested()) throw Stopped{};
+      Box box = std::move(open.back());
+      open.pop_back();
+      ++number;
+      ++tally.boxes;
+      const std::string_view word = words.Next();
+      if (word == ".") {
+        if (!IsEmpty(propagator, box))
+          throw Rejection(fmt::format("box {} of the search is not empty", number));
+        continue;
+      }
+      const auto which = expr::Rational::Parse(word);
+      const auto value = expr::Rational::Parse(words.Next());
+      if (!which || !value || !which->IsInteger() || *which < Rational(0) ||
+          *which >= Rational(static_cast<int64_t>(places.size())))
+        throw Rejection(fmt::format("the tree of the search is malformed at box {}", number));
+      const size_t place = places[static_cast<size_t>(which->ToDouble())];
+      // The parts of an empty box are empty.
+      if (!IsEmptyNow(box)) {
+        if (!propagator.Contract(box, kSweeps)) std::ranges::for_each(box, &Enclosure::Clear);
+      }
+      Box upper = box;
+      const Enclosure middle(*value);
+      if (arena_.sort_of(propagator.variables()[place]) == arena_.Real()) {
+        upper[place].AtLeast(middle);
+        box[place].AtMost(middle);
+      } else {
+        upper[place].AtLeast(Enclosure(value->Floor() + Rational(1)));
+        box[place].AtMost(Enclosure(value->Floor()));
+      }
+      open.push_back(std::move(upper));
+      open.push_back(std::move(box));
+    }
+    if (!words.Next().empty()) throw Rejection("the tree of the search goes on behind its end");
+  }
+
+  static bool IsEmptyNow(const Box& box) {
+    return std::ranges::any_of(box, [](const Enclosure& e) { return e.IsEmpty(); });
+  }
+  static bool IsEmpty(Propagator& propagator, Box& box) {
+    return IsEmptyNow(box) || !propagator.Contract(box, kLeafSweeps);
+  }
+
+  const Certificate& certificate_;
+  const expr::Arena& arena_;
+  const base::StopToken& stop_;
+  Normal normal_;
+  std::vector<Branch> open_;
+};
+
+}  // namespace
+
+Tally Check(const Certificate& certificate, diag::Diagnostics& diagnostics, const base::StopToken& stop) {
+  Tally tally;
+  Checker checker(certificate, stop);
+  try {
+    checker.Run(tally);
+  } catch (const Rejection& why) {
+    diagnostics.Report(diag::Kind::kCertificateRejected, checker.at, why.what());
+  } catch (const Stopped&) {
+    tally.stopped = true;
+  }
+  return tally;
+}
+
+}  // namespace rondo::solve::certify

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "solve/certify/normal.h"
+
+namespace rondo::solve::certify {
+
+/// What is known to hold: formulas, and ranges of polynomials into which all comparisons of one polynomial are
+/// merged. Adding a fact adds what follows from it at once: bounds of roots bound their arguments, arguments
+/// of partial functions lie in their domains, ends of ranges of integers are integers. A value type: a case
+/// works on a copy.
+class Facts {
+ public:
+  explicit Facts(Normal& normal) : normal_(&normal) {}
+
+  void Add(FormulaId fact);
+  bool Known(FormulaId formula) const;
+  /// Do the facts contradict each other?
+  bool contradiction() const { return contradiction_; }
+  /// Replaces the variable in all facts. Rejection if `variable = value` is not known.
+  void Substitute(AtomId variable, PolyId value);
+
+ private:
+  struct Range {
+    std::optional<Rational> lo, hi;
+    bool lo_strict = false;
+    bool hi_strict = false;
+    std::set<Rational> excluded;
+    bool Add(uint8_t relation, const Rational& bound);
+    bool Implies(uint8_t relation, const Rational& bound) const;
+    bool IsEmpty() const;
+  };
+
+  void AddLiteral(const Formula& literal);
+  void Follow(PolyId poly);
+  void Defined(PolyId poly);
+  void AddComparison(PolyId poly, uint8_t relation, const Rational& bound);
+
+  Normal* normal_;
+  std::map<PolyId, Range> ranges_;
+  std::set<FormulaId> formulas_;
+  std::set<PolyId> defined_;
+  bool contradiction_ = false;
+};
+
+}  // namespace rondo::solve::certify

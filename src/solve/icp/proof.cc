@@ -1,0 +1,55 @@
+#include "solve/icp/proof.h"
+
+#include <fmt/format.h>
+
+#include "expr/substitute.h"
+
+namespace rondo::solve::icp {
+
+using expr::Op;
+
+Proof::Proof(const Lowered& lowered)
+    : arena_(lowered.arena), printer_(lowered.arena, expr::SmtFunctions::kNamed) {
+  // A truth value that has become a number.
+  for (const auto& [term, variable] : lowered.variables) {
+    if (variable.kind == Variable::Kind::kBool)
+      printer_.Define(term, fmt::format("(ite {} 1.0 0.0)", printer_.Print(term, true)));
+  }
+}
+
+// Compound terms inside others get names, so that what is shared is written once.
+std::string Proof::Say(TermId term) {
+  expr::VisitPostorder(arena_, term, seen_, [&](TermId t) {
+    const bool scaled = arena_.op(t) == Op::kMul && arena_.IsNumber(arena_.arg(t, 0));
+    const bool whole = t == term && arena_.sort_of(t) == arena_.Bool();
+    if (arena_.args(t).empty() || scaled || whole || printer_.IsDefined(t)) return;
+    const std::string name = fmt::format("$p{}", names_++);
+    text_ += fmt::format("(let {} {})\n", name, printer_.Print(t, true));
+    printer_.Define(t, name);
+  });
+  return printer_.Print(term);
+}
+
+void Proof::Step(const char* head, TermId formula) {
+  const std::string said = Say(formula);
+  text_ += fmt::format("({} {})\n", head, said);
+}
+
+void Proof::Substitute(TermId variable, TermId value) {
+  const std::string said = Say(value);
+  text_ += fmt::format("(substitute {} {})\n", printer_.Print(variable, true), said);
+}
+
+void Proof::Squares(TermId formula) { Step("squares", formula); }
+void Proof::Fact(TermId formula) { Step("fact", formula); }
+void Proof::Cases(TermId disjunction) { Step("cases", disjunction); }
+void Proof::Case(TermId alternative) { Step("case", alternative); }
+
+void Proof::Search(const std::vector<TermId>& variables, const std::string& tree) {
+  text_ += "(search (";
+  for (size_t v = 0; v < variables.size(); ++v)
+    text_ += (v == 0 ? "" : " ") + printer_.Print(variables[v], true);
+  text_ += fmt::format(") \"{}\")\n", tree);
+}
+
+}  // namespace rondo::solve::icp
