@@ -6,6 +6,7 @@
 #include <random>
 
 #include "expr/evaluate.h"
+#include "formulas.h"
 #include "lang/smtlib/script.h"
 #include "solve/icp/icp_solver.h"
 #include "solve/z3/z3_solver.h"
@@ -17,81 +18,9 @@ using expr::Arena;
 using expr::Elementary;
 using expr::Rational;
 using expr::TermId;
-
-std::string Say(const Answer& a) {
-  if (std::holds_alternative<Unsat>(a)) return "unsat";
-  if (std::holds_alternative<Sat>(a)) return "sat";
-  return std::holds_alternative<DeltaSat>(a) ? "delta-sat" : "unknown";
-}
-
-// Random formulas over a few bounded reals.
-class Formulas {
- public:
-  Formulas(uint64_t seed, bool polynomial) : rng_(seed), polynomial_(polynomial) {
-    for (const char* name : {"x", "y", "z"})
-      variables_.push_back(arena_.Variable(arena_.Declare(name, {}, arena_.Real())));
-    for (const TermId v : variables_) {
-      query_.assertions.push_back({arena_.And(arena_.Le(Number(-2), v), arena_.Le(v, Number(2))), ""});
-    }
-    const int count = 1 + Pick(3);
-    for (int i = 0; i < count; ++i) query_.assertions.push_back({Formula(2), ""});
-    query_.arena = &arena_;
-    query_.wanted = variables_;
-  }
-
-  const Query& query() const { return query_; }
-  const std::vector<TermId>& variables() const { return variables_; }
-  Arena& arena() { return arena_; }
-
- private:
-  int Pick(int n) { return static_cast<int>(rng_() % static_cast<uint64_t>(n)); }
-  TermId Number(int n) { return arena_.Number(arena_.Real(), Rational(n)); }
-  TermId Constant() {
-    static constexpr const char* kNumbers[] = {"0", "1", "-1", "0.5", "2", "0.1", "-0.3", "1.7", "3"};
-    return arena_.Number(arena_.Real(), *Rational::Parse(kNumbers[Pick(9)]));
-  }
-
-  TermId Formula(int depth) {
-    switch (depth == 0 ? 3 : Pick(6)) {
-      case 0:
-        return arena_.And(Formula(depth - 1), Formula(depth - 1));
-      case 1:
-        return arena_.Or(Formula(depth - 1), Formula(depth - 1));
-      case 2:
-        return arena_.Not(Formula(depth - 1));
-      default: {
-        const TermId a = Term(3);
-        const TermId b = Pick(2) == 0 ? Constant() : Term(2);
-        const int relation = Pick(7);
-        return relation < 3 ? arena_.Le(a, b) : relation < 6 ? arena_.Lt(b, a) : arena_.Eq(a, b);
-      }
-    }
-  }
-
-  TermId Term(int depth) {
-    if (depth == 0) return Pick(4) == 0 ? Constant() : variables_[static_cast<size_t>(Pick(3))];
-    const int choice = Pick(polynomial_ ? 8 : 14);
-    if (choice < 2) return Term(0);
-    const TermId a = Term(depth - 1);
-    if (choice < 4) return arena_.Add(a, Term(depth - 1));
-    if (choice < 5) return arena_.Sub(a, Term(depth - 1));
-    if (choice < 7) return arena_.Mul(a, Term(depth - 1));
-    if (choice < 8) return arena_.Ite(arena_.Le(a, Term(0)), Term(depth - 1), Term(0));
-    static constexpr Elementary kUnary[] = {
-        Elementary::kSin, Elementary::kCos, Elementary::kSqrt, Elementary::kAbs,  Elementary::kAtan,
-        Elementary::kExp, Elementary::kTan, Elementary::kLog,  Elementary::kAsin, Elementary::kAcos};
-    if (choice < 12) return arena_.Apply(kUnary[Pick(choice == 8 ? 2 : 10)], {a});
-    if (choice < 13)
-      return arena_.Apply(Pick(2) == 0 ? Elementary::kMin : Elementary::kMax, {a, Term(depth - 1)});
-    return arena_.Divide(a, Term(depth - 1));
-  }
-
-  std::mt19937_64 rng_;
-  bool polynomial_;
-  Arena arena_;
-  Query query_;
-  std::vector<TermId> variables_;
-};
+using testing_support::CertificateProblem;
+using testing_support::Formulas;
+using testing_support::Say;
 
 // Plain floating point, written for this test: does the point satisfy the formula, and by which margin?
 // Undefined terms are NaN, and no comparison with them holds.
@@ -218,7 +147,8 @@ double BestMargin(Formulas& formulas, uint64_t seed, int samples) {
   return best;
 }
 
-const Budget kBudget{std::chrono::milliseconds(1000), false};
+// Every `unsat` below comes with a certificate.
+const Budget kBudget{std::chrono::milliseconds(1000), false, true};
 
 Options Few() {
   Options options;
@@ -240,6 +170,7 @@ TEST(Icp, AgreesWithZ3OnPolynomials) {
     const Answer other = z3.Check(f.query(), {std::chrono::milliseconds(300), false}, {});
     if (Say(mine) == "delta-sat" || Say(mine) == "unknown" || Say(other) == "unknown") continue;
     ++decided;
+    ASSERT_EQ(CertificateProblem(mine), "") << "seed " << seed << "\n" << ToSmtLib(f.query());
     ASSERT_EQ(Say(mine), Say(other)) << "seed " << seed << "\n" << ToSmtLib(f.query());
   }
   EXPECT_GT(decided, Rounds() * 6 / 10);
@@ -254,6 +185,7 @@ TEST(Icp, NeverExcludesWhatSamplingFinds) {
     sat += Say(mine) == "sat" ? 1 : 0;
     if (Say(mine) != "unsat") continue;
     ++unsat;
+    ASSERT_EQ(CertificateProblem(mine), "") << "seed " << seed << "\n" << ToSmtLib(f.query());
     ASSERT_LT(BestMargin(f, static_cast<uint64_t>(seed), 2000), 1e-7) << "seed " << seed << "\n"
                                                                       << ToSmtLib(f.query());
   }
@@ -315,7 +247,9 @@ std::string Solve(const std::string& text) {
   for (const auto& c : script.commands) {
     if (c.kind == lang::smtlib::Command::Kind::kAssert) query.assertions.push_back({c.terms[0], ""});
   }
-  return Say(IcpSolver().Check(query, {std::chrono::milliseconds(20'000), false}, {}));
+  const Answer answer = IcpSolver().Check(query, {std::chrono::milliseconds(20'000), false, true}, {});
+  const std::string problem = CertificateProblem(answer);
+  return problem.empty() ? Say(answer) : problem;
 }
 
 const std::string kReals = "(declare-fun x () Real)(declare-fun y () Real)(declare-fun z () Real)";

@@ -31,7 +31,7 @@ def check(name, good, detail=""):
 
 LINEFORM = "examples/koord/lineform.koord"
 
-for args in (["--help"], ["check", "--help"], ["prove", "--help"], ["fmt", "--help"], ["explain", "--help"], ["ast", "--help"], ["solve", "--help"]):
+for args in (["--help"], ["check", "--help"], ["prove", "--help"], ["fmt", "--help"], ["explain", "--help"], ["ast", "--help"], ["solve", "--help"], ["certify", "--help"]):
     done = rondo(*args)
     check(f"{args}", done.returncode == 0 and "example" in done.stdout, done.stdout + done.stderr)
 for args in ([], ["nonsense"], ["prove"], ["prove", LINEFORM, "--robots", "0"], ["explain", "koord-nonsense"]):
@@ -82,6 +82,19 @@ copy.write_text((ROOT / LINEFORM).read_text().replace("mid([x[pid + 1], x[pid - 
 check("cache of another program", rondo("prove", str(copy)).returncode == 0)
 copy.write_text((ROOT / LINEFORM).read_text().replace("mid([x[pid + 1], x[pid - 1]])", "x[pid + 1] + x[pid - 1]"))
 check("a wrong program after a right one", rondo("prove", str(copy)).returncode == 1)
+
+# Every `unsat` comes with a refutation that holds, for its own script and for no other.
+certificates = [FOLDER / f"{name}.cert" for name in ("it", "it-2")]
+rondo("solve", "--cert", str(certificates[0]), *map(str, SCRIPTS))
+for script, path in zip([s for s in SCRIPTS if "unsat" in s.read_text()], certificates):
+    done = rondo("certify", "--of", str(script), str(path))
+    check(f"certify {script.name}", done.returncode == 0 and "accepted" in done.stdout, done.stdout + done.stderr)
+    check("certify of another", rondo("certify", "--of", str(polynomial), str(path)).returncode == 1)
+    path.write_text(path.read_text().replace("(check-sat)", "(contradiction)"))
+    done = rondo("certify", "--json", str(path))
+    check("certify a wrong step", done.returncode == 1 and "certificate-rejected" in done.stdout, done.stdout)
+check("certificates are written by one engine", rondo("solve", "--solver", "z3", "--cert", "x", str(polynomial)).returncode == 2)
+check("certify nothing", rondo("certify", "missing.cert").returncode == 1)
 
 # Obligations as files that another solver decides alike.
 out = FOLDER / "smt"

@@ -16,6 +16,7 @@ using lang::smtlib::Command;
 
 constexpr int kSweeps = 3;       // for a box that is split
 constexpr int kLeafSweeps = 60;  // for a box that must turn out empty
+constexpr int kLeafParts = 64;   // into which it may be split to that end: enclosures differ from the search's
 
 struct Stopped {};
 
@@ -212,8 +213,30 @@ class Checker {
   static bool IsEmptyNow(const Box& box) {
     return std::ranges::any_of(box, [](const Enclosure& e) { return e.IsEmpty(); });
   }
-  static bool IsEmpty(Propagator& propagator, Box& box) {
-    return IsEmptyNow(box) || !propagator.Contract(box, kLeafSweeps);
+
+  bool IsEmpty(Propagator& propagator, Box& box) const {
+    if (IsEmptyNow(box) || !propagator.Contract(box, kLeafSweeps)) return true;
+    std::vector<std::pair<Box, size_t>> open{{box, 0}};  // with the variable to split next
+    for (int parts = 0; !open.empty(); ++parts) {
+      if (parts == kLeafParts) return false;
+      auto [part, next] = std::move(open.back());
+      open.pop_back();
+      if (parts > 0 && !propagator.Contract(part, kLeafSweeps)) continue;
+      const auto splits = [&](size_t v) {
+        return arena_.sort_of(propagator.variables()[v]) == arena_.Real() && part[v].IsBounded();
+      };
+      size_t v = next % part.size();
+      for (size_t tried = 0; !splits(v); v = (v + 1) % part.size()) {
+        if (++tried == part.size()) return false;
+      }
+      auto [low, high] = part[v].Halves();
+      Box other = part;
+      part[v] = low;
+      other[v] = high;
+      open.emplace_back(std::move(part), v + 1);
+      open.emplace_back(std::move(other), v + 1);
+    }
+    return true;
   }
 
   const Certificate& certificate_;

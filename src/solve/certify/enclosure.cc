@@ -49,12 +49,19 @@ bool Enclosure::Contains(const Enclosure& other) const {
   return mpfr_lessequal_p(lo_, other.lo_) != 0 && mpfr_lessequal_p(other.hi_, hi_) != 0;
 }
 
+std::pair<Enclosure, Enclosure> Enclosure::Halves() const {
+  std::pair<Enclosure, Enclosure> halves(*this, *this);
+  mpfr_t& middle = halves.first.hi_;
+  mpfr_add(middle, lo_, hi_, MPFR_RNDN);
+  mpfr_div_2ui(middle, middle, 1, MPFR_RNDN);
+  mpfr_set(halves.second.lo_, middle, MPFR_RNDN);
+  return halves;
+}
+
 double Enclosure::Share(const Enclosure& before) const {
-  const bool was_infinite = mpfr_inf_p(before.lo_) != 0 || mpfr_inf_p(before.hi_) != 0;
-  const bool is_infinite = mpfr_inf_p(lo_) != 0 || mpfr_inf_p(hi_) != 0;
-  if (was_infinite) {
+  if (!before.IsBounded()) {
     const bool moved = mpfr_equal_p(lo_, before.lo_) == 0 || mpfr_equal_p(hi_, before.hi_) == 0;
-    return moved && !is_infinite ? 0 : moved ? 0.5 : 1;
+    return moved ? 0.5 : 1;
   }
   const Enclosure now = *this - *this;
   const Enclosure then = before - before;
@@ -234,6 +241,16 @@ Enclosure Decreasing(const Enclosure& a, Enclosure::Monotone f) {
   f(r.lo_, a.hi_, MPFR_RNDD);
   f(r.hi_, a.lo_, MPFR_RNDU);
   return r;
+}
+
+Enclosure Log(const Enclosure& a) {
+  Enclosure r = a;
+  if (a.IsEmpty() || mpfr_sgn(a.hi_) <= 0) {
+    r.Clear();
+    return r;
+  }
+  if (mpfr_sgn(r.lo_) < 0) mpfr_set_zero(r.lo_, 1);
+  return Increasing(r, mpfr_log);
 }
 
 namespace {

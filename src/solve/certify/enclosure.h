@@ -2,6 +2,8 @@
 
 #include <mpfr.h>
 
+#include <utility>
+
 #include "expr/rational.h"
 
 namespace rondo::solve::certify {
@@ -21,6 +23,8 @@ class Enclosure {
   bool IsEmpty() const { return mpfr_greater_p(lo_, hi_) != 0; }
   bool Contains(const Enclosure& other) const;
   bool HasZero() const { return mpfr_sgn(lo_) <= 0 && mpfr_sgn(hi_) >= 0; }
+  bool IsBounded() const { return mpfr_number_p(lo_) != 0 && mpfr_number_p(hi_) != 0; }
+  std::pair<Enclosure, Enclosure> Halves() const;  ///< that together are all of it; bounded ones only
   /// How much of `before` is left, from 0 to 1.
   double Share(const Enclosure& before) const;
 
@@ -51,6 +55,7 @@ class Enclosure {
   using Monotone = int (*)(mpfr_t, const mpfr_t, mpfr_rnd_t);
   friend Enclosure Increasing(const Enclosure& a, Monotone f);
   friend Enclosure Decreasing(const Enclosure& a, Monotone f);
+  friend Enclosure Log(const Enclosure& a);
   friend Enclosure Sin(const Enclosure& a);
   friend Enclosure Cos(const Enclosure& a);
   friend Enclosure Tan(const Enclosure& a);
@@ -83,6 +88,7 @@ Enclosure Min(const Enclosure& a, const Enclosure& b);
 Enclosure Max(const Enclosure& a, const Enclosure& b);
 Enclosure Increasing(const Enclosure& a, Enclosure::Monotone f);
 Enclosure Decreasing(const Enclosure& a, Enclosure::Monotone f);
+Enclosure Log(const Enclosure& a);
 Enclosure Sin(const Enclosure& a);
 Enclosure Cos(const Enclosure& a);
 Enclosure Tan(const Enclosure& a);

@@ -292,7 +292,7 @@ Enclosure Propagator::Evaluate(const Node& n) const {
     case Elementary::kExp:
       return Increasing(a, mpfr_exp);
     case Elementary::kLog:
-      return Increasing(NotNegative(a), mpfr_log);
+      return Log(a);
     case Elementary::kCount_:
       break;
   }
@@ -466,7 +466,7 @@ bool Propagator::BackwardFunction(const Node& n, const Enclosure& z) {
     case Elementary::kAtan:
       return Narrow(n.a, Tan(z));
     case Elementary::kExp:
-      return Narrow(n.a, Increasing(NotNegative(z), mpfr_log));
+      return Narrow(n.a, Log(z));
     case Elementary::kLog:
       return Narrow(n.a, Increasing(z, mpfr_exp));
     default:
