@@ -50,7 +50,10 @@ def free2(gap):
 
 
 def arm(gap):
-    """A cart (a box) and the lower link (a cylinder) of an arm with three joints on another cart, to its right."""
+    """A cart (a box) and the lower link (a cylinder) of an arm with three joints on another cart, to its right.
+
+    The gap is that of spheres around both; the arm must also reach down, so it really is 0.08 m wider.
+    """
     left = 0.5 + math.hypot(0.22 + 0.10, 0.04) + math.hypot(0.09, 0.085) + gap
     variables = {"x1": (-0.5, 0.5), "y1": (-0.5, 0.5), "t1": (-3.15, 3.15), "x2": (f"{left:.12f}", f"{left + 0.5:.12f}"),
                  "y2": (-0.5, 0.5), "t2": (-3.15, 3.15),
@@ -81,4 +84,4 @@ def quads(gap):
 
 
 FAMILIES = [("disc", disc, (0.1, 0.05, 0.01, -0.05)), ("rect2", rect2, (0.1, 0.05, 0.02, 0.005, -0.05)), ("free2", free2, (0.3,)),
-            ("arm", arm, (0.2, 0.1, 0.05, 0.02, -0.05)), ("quads", quads, (0.3, 0.1, -1.2))]
+            ("arm", arm, (0.2, 0.1, 0.05, 0.02, -0.2)), ("quads", quads, (0.3, 0.1, -1.2))]

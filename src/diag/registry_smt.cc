@@ -26,9 +26,11 @@ constexpr KindInfo kTable[] = {
      "(declare-fun f (Real) Real)\n(check-sat)\n", "solve"},
     {Kind::kCertificateRejected, "certificate-rejected", Severity::kError,
      "a step of a certificate that does not follow",
-     "A certificate refutes the assertions above its proof step by step. The checker knows nothing of how it was "
+     "A certificate refutes the assertions above its proof step by step. The checker knows nothing of how it "
+     "was "
      "found:\n"
-     "it accepts a step only if it can establish it with its own arithmetic. A rejected certificate says nothing "
+     "it accepts a step only if it can establish it with its own arithmetic. A rejected certificate says "
+     "nothing "
      "about the\n"
      "assertions; if `rondo solve` wrote it as it is, that is a bug of Rondo.",
      "(declare-fun x () Real)\n(assert (<= x 1.0))\n(contradiction)\n", "certify"},

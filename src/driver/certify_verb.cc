@@ -71,8 +71,8 @@ int Run(const Options& options) {
                     {"cases", tally.cases},
                     {"boxes", tally.boxes}});
     if (!accepted) continue;
-    text += fmt::format("{}: accepted: the {} assertions have no common solution ({} cases, {} boxes)\n", path,
-                        tally.assertions, tally.cases, tally.boxes);
+    text += fmt::format("{}: accepted: the {} assertions have no common solution ({} cases, {} boxes)\n",
+                        path, tally.assertions, tally.cases, tally.boxes);
   }
   const bool good = readable && !session.diagnostics.has_errors() && !stopped;
   if (options.json) {
@@ -99,7 +99,8 @@ void AddCertifyVerb(CLI::App& app, int& status) {
   verb->footer(
       "example: rondo solve --cert it.cert examples/smt/rectangles.smt2\n"
       "         rondo certify --of examples/smt/rectangles.smt2 it.cert\n\n"
-      "The checker shares no code with the search: it has normal forms and interval arithmetic (MPFR) of its own.\n"
+      "The checker shares no code with the search: it has normal forms and interval arithmetic (MPFR) of its "
+      "own.\n"
       "exit status: 0 every certificate is accepted, 1 one is not, 3 interrupted");
   verb->callback([options, &status] { status = Run(*options); });
 }

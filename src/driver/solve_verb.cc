@@ -192,8 +192,9 @@ void AddSolveVerb(CLI::App& app, int& status) {
   verb->add_option("--precision", options->precision,
                    "the widest box that may be answered with delta-sat; default: what the script says")
       ->check(CLI::Range(1e-12, 1e3));
-  verb->add_option("--cert", options->certificate,
-                   "where to write the refutation of `unsat`, for `rondo certify`; more than one are numbered");
+  verb->add_option(
+      "--cert", options->certificate,
+      "where to write the refutation of `unsat`, for `rondo certify`; more than one are numbered");
   verb->add_flag("--compare", options->compare, "ask every engine and compare their answers");
   verb->add_flag("--no-lemmas", options->no_lemmas, "do not look for rotations, to measure what they bring");
   verb->add_flag("--model", options->model, "print values of the variables after `sat`");

@@ -74,7 +74,8 @@ TEST(Certify, RefutesNothingThatHasASolution) {
     const auto* unsat = std::get_if<Unsat>(&answer);
     if (unsat == nullptr) continue;
     ASSERT_EQ(Rejected(unsat->certificate), "") << unsat->certificate;
-    const std::string proof = unsat->certificate.substr(ToSmtLib(f.query(), expr::SmtFunctions::kNamed).size());
+    const std::string proof =
+        unsat->certificate.substr(ToSmtLib(f.query(), expr::SmtFunctions::kNamed).size());
     for (size_t without = 0; without < f.query().assertions.size(); ++without) {
       Query weaker = f.query();
       weaker.assertions.erase(weaker.assertions.begin() + static_cast<std::ptrdiff_t>(without));
@@ -86,14 +87,15 @@ TEST(Certify, RefutesNothingThatHasASolution) {
         for (int i = 0; i < change / 2; ++i) Change(lines, script.size(), rng);
         ++tried;
         ASSERT_NE(Rejected(Join(lines)), "") << "seed " << seed << " without assertion " << without << "\n"
-                                            << Join(lines);
+                                             << Join(lines);
       }
     }
   }
   EXPECT_GT(tried, 500);
 }
 
-const std::string kHead = "(declare-fun x () Real)(declare-fun y () Real)(declare-fun n () Int)(declare-fun b () Bool)";
+const std::string kHead =
+    "(declare-fun x () Real)(declare-fun y () Real)(declare-fun n () Int)(declare-fun b () Bool)";
 
 TEST(Certify, SaysWhatDoesNotFollow) {
   const auto said = [](const std::string& text) { return Rejected(kHead + text); };
@@ -107,7 +109,8 @@ TEST(Certify, SaysWhatDoesNotFollow) {
             "no contradiction is known here");
   EXPECT_EQ(said("(assert (<= x 0.0))(push 1)(contradiction)"), "a certificate has no such command");
   EXPECT_EQ(said("(assert (<= x 0.0))(squares (<= (* x x) 0.0))"), "this does not follow from what is known");
-  EXPECT_EQ(said("(assert (<= x 0.0))(fact (<= x 0.0))(search (x) \".\")"), "box 1 of the search is not empty");
+  EXPECT_EQ(said("(assert (<= x 0.0))(fact (<= x 0.0))(search (x) \".\")"),
+            "box 1 of the search is not empty");
   EXPECT_EQ(said("(assert (<= x 0.0))(fact (<= x 0.0))(search (x) \"0 1 .\")"),
             "box 2 of the search is not empty");
   EXPECT_EQ(said("(assert (<= x 0.0))(fact (<= x 0.0))(search (y) \".\")"),
@@ -119,18 +122,23 @@ TEST(Certify, IsNotFooled) {
   const auto bad = [](const std::string& text) { return !Rejected(kHead + text).empty(); };
   // That a root cancels does not make it defined.
   EXPECT_TRUE(bad("(assert (< y 0.0))(fact (<= (+ x (sqrt y) (- (sqrt y))) x))(search (y) \".\")"));
-  EXPECT_TRUE(bad("(assert (< y 0.0))(assert (<= x 0.0))"
-                  "(fact (<= (+ x (* 0.0 (sqrt y))) 0.0))(search (x y) \".\")"));
-  EXPECT_TRUE(bad("(assert (<= y (- 1.0)))(fact (<= y (- 1.0)))"
-                  "(fact (or (<= (sqrt y) 1.0) (<= (- (sqrt y)) (- 1.0)) (<= y 0.0)))(search (y) \".\")"));
+  EXPECT_TRUE(
+      bad("(assert (< y 0.0))(assert (<= x 0.0))"
+          "(fact (<= (+ x (* 0.0 (sqrt y))) 0.0))(search (x y) \".\")"));
+  EXPECT_TRUE(
+      bad("(assert (<= y (- 1.0)))(fact (<= y (- 1.0)))"
+          "(fact (or (<= (sqrt y) 1.0) (<= (- (sqrt y)) (- 1.0)) (<= y 0.0)))(search (y) \".\")"));
   // A disjunct that is undefined refutes nothing.
-  EXPECT_TRUE(bad("(assert (<= y (- 1.0)))(assert (or (<= (sqrt y) 1.0) (<= y 0.0)))(fact (<= y (- 1.0)))"
-                  "(fact (or (<= (sqrt y) 1.0) (<= y 0.0)))(search (y) \".\")"));
+  EXPECT_TRUE(
+      bad("(assert (<= y (- 1.0)))(assert (or (<= (sqrt y) 1.0) (<= y 0.0)))(fact (<= y (- 1.0)))"
+          "(fact (or (<= (sqrt y) 1.0) (<= y 0.0)))(search (y) \".\")"));
   // Quotients by 0 have values.
-  EXPECT_TRUE(bad("(assert (= x 0.0))(assert (= y (/ 1.0 x)))(substitute x 0.0)(fact (= y (/ 1.0 0.0)))"
-                  "(search (y) \".\")"));
-  EXPECT_TRUE(bad("(assert (<= (- 1.0) x 1.0))(assert (>= (/ 1.0 x) 1e9))(fact (<= (- 1.0) x))(fact (<= x 1.0))"
-                  "(fact (>= (/ 1.0 x) 1e9))(search (x) \"0 0 . .\")"));
+  EXPECT_TRUE(
+      bad("(assert (= x 0.0))(assert (= y (/ 1.0 x)))(substitute x 0.0)(fact (= y (/ 1.0 0.0)))"
+          "(search (y) \".\")"));
+  EXPECT_TRUE(
+      bad("(assert (<= (- 1.0) x 1.0))(assert (>= (/ 1.0 x) 1e9))(fact (<= (- 1.0) x))(fact (<= x 1.0))"
+          "(fact (>= (/ 1.0 x) 1e9))(search (x) \"0 0 . .\")"));
   // Integers are rounded inward, reals are not.
   EXPECT_FALSE(bad("(assert (< 0 n 1))(contradiction)"));
   EXPECT_TRUE(bad("(assert (< 0.0 x 1.0))(contradiction)"));
@@ -140,13 +148,15 @@ TEST(Certify, IsNotFooled) {
   EXPECT_TRUE(bad("(assert b)(fact b)(search (b) \".\")"));
   // A bound that a double would round away.
   EXPECT_TRUE(bad("(assert (< x 0.1000000000000000000000001))(assert (> x 0.1))(contradiction)"));
-  EXPECT_TRUE(bad("(assert (< x 0.1000000000000000000000001))(assert (> x 0.1))"
-                  "(fact (< x 0.1000000000000000000000001))(fact (> x 0.1))(search (x) \"0 0.1 . .\")"));
+  EXPECT_TRUE(
+      bad("(assert (< x 0.1000000000000000000000001))(assert (> x 0.1))"
+          "(fact (< x 0.1000000000000000000000001))(fact (> x 0.1))(search (x) \"0 0.1 . .\")"));
   // Ends of the domain belong to it.
   EXPECT_TRUE(bad("(assert (<= (asin x) (- 1.5)))(fact (<= (asin x) (- 1.5)))(search (x) \"0 0 . .\")"));
   EXPECT_TRUE(bad("(assert (<= (sqrt x) 0.0))(contradiction)"));
-  EXPECT_TRUE(bad("(assert (= (sin x) 1.0))(assert (<= 1.5 x 1.6))(fact (= (sin x) 1.0))(fact (<= 1.5 x))"
-                  "(fact (<= x 1.6))(search (x) \"0 1.5707963267948966 . .\")"));
+  EXPECT_TRUE(
+      bad("(assert (= (sin x) 1.0))(assert (<= 1.5 x 1.6))(fact (= (sin x) 1.0))(fact (<= 1.5 x))"
+          "(fact (<= x 1.6))(search (x) \"0 1.5707963267948966 . .\")"));
   // A square may vanish, and a difference of squares does not vanish summand by summand.
   EXPECT_TRUE(bad("(assert (<= (* x x) 0.0))(squares (<= (* x x) 0.0))(contradiction)"));
   EXPECT_TRUE(bad("(assert (<= (- (* x x) (* y y)) 0.0))(squares (<= (- (* x x) (* y y)) 0.0))"));

@@ -12,6 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   solve::certify::ReadCertificate(sources, file, certificate, diagnostics);
   if (diagnostics.has_errors()) return 0;
   const base::StopToken stop;
-  solve::certify::Check(certificate, diagnostics, stop.WithDeadline(base::StopToken::Clock::now() + std::chrono::seconds(1)));
+  solve::certify::Check(certificate, diagnostics,
+                        stop.WithDeadline(base::StopToken::Clock::now() + std::chrono::seconds(1)));
   return 0;
 }

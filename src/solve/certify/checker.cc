@@ -16,7 +16,7 @@ using lang::smtlib::Command;
 
 constexpr int kSweeps = 3;       // for a box that is split
 constexpr int kLeafSweeps = 60;  // for a box that must turn out empty
-constexpr int kLeafParts = 64;   // into which it may be split to that end: enclosures differ from the search's
+constexpr int kLeafParts = 64;  // into which it may be split to that end: enclosures differ from the search's
 
 struct Stopped {};
 
@@ -73,7 +73,7 @@ class Checker {
   /// A case: what is known in it, and, once it is split, the alternatives that are still open.
   struct Branch {
     Facts facts;
-    std::vector<expr::TermId> required;  // for searches
+    std::vector<const Step*> required;  // facts and identities, for searches
     std::optional<std::set<FormulaId>> open;
     FormulaId assumed;
   };
@@ -103,7 +103,11 @@ class Checker {
         return Squares(branch.facts, step.terms[0]);
       case Step::Kind::kFact:
         Require(branch, step.terms[0]);
-        branch.required.push_back(step.terms[0]);
+        branch.required.push_back(&step);
+        return;
+      case Step::Kind::kIdentity:
+        Identity(step.terms);
+        branch.required.push_back(&step);
         return;
       case Step::Kind::kCases:
         return Cases(branch, step.terms[0]);
@@ -126,6 +130,28 @@ class Checker {
       throw Rejection("this says that something is defined, which does not follow from what is known");
   }
 
+  std::vector<std::pair<Rational, expr::TermId>> Parts(const std::vector<expr::TermId>& terms) const {
+    std::vector<std::pair<Rational, expr::TermId>> parts;
+    for (size_t i = 0; i + 1 < terms.size(); i += 2) parts.emplace_back(arena_.number(terms[i]), terms[i + 1]);
+    return parts;
+  }
+
+  // The sum is 0 as a polynomial, and defined everywhere.
+  void Identity(const std::vector<expr::TermId>& terms) {
+    for (size_t i = 0; i < terms.size(); ++i) {
+      const bool number = i % 2 == 0;
+      if (arena_.sort_of(terms[i]) == arena_.Bool() || (number && !arena_.IsNumber(terms[i])))
+        throw Rejection("numbers and terms should alternate here");
+      if (!number && !normal_.IsTotal(terms[i])) throw Rejection("a term of the identity is not defined everywhere");
+    }
+    Poly sum = Normal::ConstantPoly(arena_.number(terms.back()));
+    for (const auto& [c, term] : Parts(terms)) {
+      const Poly p = normal_.poly(normal_.Number(term));
+      for (const auto& [m, d] : p) AddTo(sum, m, c * d);
+    }
+    if (!sum.empty()) throw Rejection("this is no identity");
+  }
+
   void Cases(Branch& branch, expr::TermId formula) {
     const FormulaId id = normal_.Of(formula);
     if (!branch.facts.Known(id)) throw Rejection("this disjunction is not known");
@@ -140,7 +166,8 @@ class Checker {
   // c1 r1 r1 + ... <= b with b <= 0 < ci.
   void Squares(Facts& facts, expr::TermId formula) {
     const Op op = arena_.op(formula);
-    if (op != Op::kLe && op != Op::kLt && op != Op::kEq) throw Rejection("a sum of squares should be at most 0");
+    if (op != Op::kLe && op != Op::kLt && op != Op::kEq)
+      throw Rejection("a sum of squares should be at most 0");
     const bool swapped = op == Op::kEq && arena_.IsNumber(arena_.arg(formula, 0));
     const expr::TermId sum = arena_.arg(formula, swapped ? 1 : 0);
     const expr::TermId bound = arena_.arg(formula, swapped ? 0 : 1);
@@ -154,7 +181,8 @@ class Checker {
         if (arena_.number(arena_.arg(t, 0)) < Rational(0)) throw Rejection("a square is subtracted");
         t = arena_.arg(t, 1);
       }
-      if (arena_.op(t) != Op::kMul || arena_.arg(t, 0) != arena_.arg(t, 1)) throw Rejection("a summand is no square");
+      if (arena_.op(t) != Op::kMul || arena_.arg(t, 0) != arena_.arg(t, 1))
+        throw Rejection("a summand is no square");
       facts.Add(normal_.Literal(normal_.poly(normal_.Number(arena_.arg(t, 0))), kEven));
     }
     if (none) facts.Add(normal_.Literal({}, kBelow));
@@ -162,7 +190,13 @@ class Checker {
 
   void Search(const Branch& branch, const Step& step, Tally& tally) {
     Propagator propagator(arena_);
-    for (const expr::TermId f : branch.required) propagator.Require(f);
+    for (const Step* fact : branch.required) {
+      if (fact->kind == Step::Kind::kFact) {
+        propagator.Require(fact->terms[0]);
+      } else {
+        propagator.RequireSum(Parts(fact->terms), arena_.number(fact->terms.back()));
+      }
+    }
     std::vector<size_t> places;
     for (const expr::TermId v : step.terms) {
       const auto& all = propagator.variables();

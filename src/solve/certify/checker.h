@@ -16,8 +16,8 @@ struct Tally {
   bool stopped = false;  ///< not checked to the end
 };
 
-/// Checks that the proof shows that no values of the variables satisfy all assertions of the script. The first
-/// step that does not is reported (`certificate-rejected`). Relies on the reader of scripts, on the
+/// Checks that the proof shows that no values of the variables satisfy all assertions of the script. The
+/// first step that does not is reported (`certificate-rejected`). Relies on the reader of scripts, on the
 /// simplifications of `expr` and on MPFR; on nothing of the solver. Polls `stop`.
 Tally Check(const Certificate& certificate, diag::Diagnostics& diagnostics, const base::StopToken& stop);
 

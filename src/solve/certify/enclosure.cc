@@ -45,10 +45,6 @@ Enclosure Enclosure::Pi() {
   return r;
 }
 
-bool Enclosure::Contains(const Enclosure& other) const {
-  return mpfr_lessequal_p(lo_, other.lo_) != 0 && mpfr_lessequal_p(other.hi_, hi_) != 0;
-}
-
 std::pair<Enclosure, Enclosure> Enclosure::Halves() const {
   std::pair<Enclosure, Enclosure> halves(*this, *this);
   mpfr_t& middle = halves.first.hi_;
@@ -279,7 +275,8 @@ Enclosure Sin(const Enclosure& a) {
   const Enclosure turns = a / Enclosure::Pi() - Enclosure(expr::Rational(1) / expr::Rational(2));
   const long first = mpfr_get_si(turns.lo_, MPFR_RNDU);
   const long last = mpfr_get_si(turns.hi_, MPFR_RNDD);
-  for (long k = first; k <= last && k <= first + 1; ++k) r.Join(Enclosure::Interval(k % 2 == 0 ? 1 : -1, k % 2 == 0 ? 1 : -1));
+  for (long k = first; k <= last && k <= first + 1; ++k)
+    r.Join(Enclosure::Interval(k % 2 == 0 ? 1 : -1, k % 2 == 0 ? 1 : -1));
   return r;
 }
 

@@ -8,9 +8,9 @@
 
 namespace rondo::solve::certify {
 
-/// An interval with ends of kBits bits (MPFR), rounded outward by every operation. Ends may be infinite; empty
-/// if the lower end is above the upper one. Functions that are not defined everywhere are taken over the part
-/// of their domain that is met.
+/// An interval with ends of kBits bits (MPFR), rounded outward by every operation. Ends may be infinite;
+/// empty if the lower end is above the upper one. Functions that are not defined everywhere are taken over
+/// the part of their domain that is met.
 class Enclosure {
  public:
   static constexpr mpfr_prec_t kBits = 64;
@@ -21,7 +21,6 @@ class Enclosure {
   Enclosure& operator=(const Enclosure& other);
 
   bool IsEmpty() const { return mpfr_greater_p(lo_, hi_) != 0; }
-  bool Contains(const Enclosure& other) const;
   bool HasZero() const { return mpfr_sgn(lo_) <= 0 && mpfr_sgn(hi_) >= 0; }
   bool IsBounded() const { return mpfr_number_p(lo_) != 0 && mpfr_number_p(hi_) != 0; }
   std::pair<Enclosure, Enclosure> Halves() const;  ///< that together are all of it; bounded ones only
@@ -76,25 +75,5 @@ class Enclosure {
   mp_limb_t digits_[2][kLimbs];
   mpfr_t lo_, hi_;
 };
-
-Enclosure operator+(const Enclosure& a, const Enclosure& b);
-Enclosure operator-(const Enclosure& a, const Enclosure& b);
-Enclosure operator*(const Enclosure& a, const Enclosure& b);
-Enclosure operator/(const Enclosure& a, const Enclosure& b);
-Enclosure Power(const Enclosure& a, unsigned n);
-Enclosure Root(const Enclosure& a, unsigned n);
-Enclosure Abs(const Enclosure& a);
-Enclosure Min(const Enclosure& a, const Enclosure& b);
-Enclosure Max(const Enclosure& a, const Enclosure& b);
-Enclosure Increasing(const Enclosure& a, Enclosure::Monotone f);
-Enclosure Decreasing(const Enclosure& a, Enclosure::Monotone f);
-Enclosure Log(const Enclosure& a);
-Enclosure Sin(const Enclosure& a);
-Enclosure Cos(const Enclosure& a);
-Enclosure Tan(const Enclosure& a);
-Enclosure Atan2(const Enclosure& y, const Enclosure& x);
-Enclosure WhereSin(const Enclosure& z, const Enclosure& x);
-Enclosure WhereTimes(const Enclosure& z, const Enclosure& b, const Enclosure& a);
-Enclosure WherePower(const Enclosure& z, unsigned n, const Enclosure& a);
 
 }  // namespace rondo::solve::certify

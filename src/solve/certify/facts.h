@@ -9,10 +9,10 @@
 
 namespace rondo::solve::certify {
 
-/// What is known to hold: formulas, and ranges of polynomials into which all comparisons of one polynomial are
-/// merged. Adding a fact adds what follows from it at once: bounds of roots bound their arguments, arguments
-/// of partial functions lie in their domains, ends of ranges of integers are integers. A value type: a case
-/// works on a copy.
+/// What is known to hold: formulas, and ranges of polynomials into which all comparisons of one polynomial
+/// are merged. Adding a fact adds what follows from it at once: bounds of roots bound their arguments,
+/// arguments of partial functions lie in their domains, ends of ranges of integers are integers. A value
+/// type: a case works on a copy.
 class Facts {
  public:
   explicit Facts(Normal& normal) : normal_(&normal) {}

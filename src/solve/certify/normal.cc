@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "expr/elementary.h"
-#include "expr/substitute.h"
 
 namespace rondo::solve::certify {
 
@@ -17,6 +16,14 @@ namespace {
 
 constexpr size_t kMostMonomials = 20'000;
 
+Monomial Merge(const Monomial& a, const Monomial& b) {
+  Monomial result;
+  std::merge(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result));
+  return result;
+}
+
+}  // namespace
+
 void AddTo(Poly& p, Monomial m, const Rational& c) {
   if (c.IsZero()) return;
   const auto [it, fresh] = p.emplace(std::move(m), c);
@@ -25,14 +32,9 @@ void AddTo(Poly& p, Monomial m, const Rational& c) {
   if (p.size() > kMostMonomials) throw Rejection("a polynomial grows too large to be compared");
 }
 
-Monomial Merge(const Monomial& a, const Monomial& b) {
-  Monomial result;
-  std::merge(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result));
-  return result;
-}
-
 uint8_t Mirrored(uint8_t r) {
-  return static_cast<uint8_t>((r & kEven) | ((r & kBelow) != 0 ? kAbove : 0) | ((r & kAbove) != 0 ? kBelow : 0));
+  return static_cast<uint8_t>((r & kEven) | ((r & kBelow) != 0 ? kAbove : 0) |
+                              ((r & kAbove) != 0 ? kBelow : 0));
 }
 
 std::optional<Rational> ConstantOf(const Poly& p) {
@@ -40,12 +42,6 @@ std::optional<Rational> ConstantOf(const Poly& p) {
   if (p.size() == 1 && p.begin()->first.empty()) return p.begin()->second;
   return std::nullopt;
 }
-
-bool IsPartial(Elementary f) {
-  return f == Elementary::kSqrt || f == Elementary::kLog || f == Elementary::kAsin || f == Elementary::kAcos;
-}
-
-}  // namespace
 
 Poly Normal::ConstantPoly(const Rational& value) {
   Poly p;
@@ -168,13 +164,23 @@ PolyId Normal::Choice(FormulaId condition, PolyId then, PolyId otherwise) {
   const bool bit = poly(then) == ConstantPoly(Rational(1)) && poly(otherwise).empty();
   if (bit && c.kind == Formula::Kind::kLiteral && c.relation == (kAbove | kEven) && c.bound == Rational(1)) {
     const AtomId a = Single(poly(c.poly));
-    if (a.valid() && atom(a).kind == Atom::Kind::kVariable && arena_.sort_of(atom(a).variable) == arena_.Bool())
+    if (a.valid() && atom(a).kind == Atom::Kind::kVariable &&
+        arena_.sort_of(atom(a).variable) == arena_.Bool())
       return c.poly;
   }
   Atom atom;
   atom.kind = Atom::Kind::kChoice;
   atom.condition = condition;
   atom.args = {then, otherwise};
+  return AtomPoly(std::move(atom));
+}
+
+PolyId Normal::Quotient(std::vector<PolyId> args) {
+  if (const auto value = ConstantOf(poly(args[1])); value && !value->IsZero())
+    return Intern(Times(Poly(poly(args[0])), ConstantPoly(Rational(1) / *value)));
+  Atom atom;
+  atom.kind = Atom::Kind::kQuotient;
+  atom.args = std::move(args);
   return AtomPoly(std::move(atom));
 }
 
@@ -194,12 +200,8 @@ PolyId Normal::NewNumber(TermId t) {
   switch (op) {
     case Op::kNumber:
       return Intern(ConstantPoly(arena_.number(t)));
-    case Op::kVariable: {
-      Atom atom;
-      atom.variable = t;
-      atom.integral = arena_.sort_of(t) != arena_.Real();
-      return AtomPoly(std::move(atom));
-    }
+    case Op::kVariable:
+      return Intern(Poly{{Monomial{Variable(t)}, Rational(1)}});
     case Op::kAdd: {
       Poly sum;
       for (const PolyId a : args) {
@@ -215,14 +217,8 @@ PolyId Normal::NewNumber(TermId t) {
       return Function(arena_.elementary_of(t), std::move(args));
     case Op::kIte:
       return Choice(Of(arena_.arg(t, 0)), args[0], args[1]);
-    case Op::kDivide: {
-      if (const auto value = ConstantOf(poly(args[1])); value && !value->IsZero())
-        return Intern(Times(Poly(poly(args[0])), ConstantPoly(Rational(1) / *value)));
-      Atom atom;
-      atom.kind = Atom::Kind::kQuotient;
-      atom.args = std::move(args);
-      return AtomPoly(std::move(atom));
-    }
+    case Op::kDivide:
+      return Quotient(std::move(args));
     default:
       throw Rejection(fmt::format("terms made with `{}` cannot be checked", expr::Name(op)));
   }
@@ -310,7 +306,8 @@ FormulaId Normal::NewFormula(TermId t, bool positive) {
       return (arena_.op(t) == Op::kAnd) == positive ? And(std::move(parts)) : Or(std::move(parts));
     }
     case Op::kIte:
-      return Or({And({Of(args[0], true), Of(args[1], positive)}), And({Of(args[0], false), Of(args[2], positive)})});
+      return Or({And({Of(args[0], true), Of(args[1], positive)}),
+                 And({Of(args[0], false), Of(args[2], positive)})});
     case Op::kEq:
       if (arena_.sort_of(args[0]) == arena_.Bool()) {
         return Or({And({Of(args[0], true), Of(args[1], positive)}),
@@ -323,135 +320,12 @@ FormulaId Normal::NewFormula(TermId t, bool positive) {
       return Compare(args[0], args[1], positive ? kBelow : kAbove | kEven);
     case Op::kVariable: {
       Poly p{{Monomial{Variable(t)}, Rational(1)}};
-      return positive ? Literal(Minus(p, ConstantPoly(Rational(1))), kAbove | kEven) : Literal(p, kBelow | kEven);
+      return positive ? Literal(Minus(p, ConstantPoly(Rational(1))), kAbove | kEven)
+                      : Literal(p, kBelow | kEven);
     }
     default:
       throw Rejection(fmt::format("formulas made with `{}` cannot be checked", expr::Name(arena_.op(t))));
   }
-}
-
-std::optional<Normal::Key> Normal::KeyOf(Elementary function, PolyId argument) {
-  if (!IsPartial(function)) return std::nullopt;
-  if (function != Elementary::kSqrt) return Key{function, argument};
-  // Where a root is defined does not depend on the scale of its argument.
-  Poly p = poly(argument);
-  if (const auto value = ConstantOf(p); value && *value >= Rational(0)) return std::nullopt;
-  const Rational lead = p.begin()->second;
-  const Rational scale = Rational(1) / (lead < Rational(0) ? Rational(0) - lead : lead);
-  for (auto& [m, c] : p) c = c * scale;
-  return Key{function, Intern(std::move(p))};
-}
-
-void Normal::KeysOf(PolyId id, std::set<Key>& keys) {
-  const Poly p = poly(id);
-  for (const auto& [m, c] : p) {
-    for (const AtomId a : m) {
-      const Atom atom = atoms_[a.index()];
-      if (atom.kind == Atom::Kind::kFunction) {
-        if (const auto key = KeyOf(atom.function, atom.args[0])) keys.insert(*key);
-      }
-      if (atom.kind == Atom::Kind::kChoice) KeysOf(atom.condition, keys);
-      for (const PolyId arg : atom.args) KeysOf(arg, keys);
-    }
-  }
-}
-
-void Normal::KeysOf(FormulaId id, std::set<Key>& keys) {
-  const Formula f = formula(id);
-  if (f.kind == Formula::Kind::kLiteral) KeysOf(f.poly, keys);
-  for (const FormulaId part : f.parts) KeysOf(part, keys);
-}
-
-bool Normal::FaithfulLiteral(TermId literal) {
-  std::set<Key> written;
-  std::unordered_set<TermId> seen;
-  expr::VisitPostorder(arena_, literal, seen, [&](TermId t) {
-    if (arena_.op(t) != Op::kElementary || !IsPartial(arena_.elementary_of(t))) return;
-    // A value that is known exactly is defined.
-    if (ConstantOf(poly(Number(t)))) return;
-    if (const auto key = KeyOf(arena_.elementary_of(t), Number(arena_.arg(t, 0)))) written.insert(*key);
-  });
-  if (written.empty()) return true;
-  std::set<Key> kept;
-  KeysOf(Of(literal), kept);
-  return std::includes(kept.begin(), kept.end(), written.begin(), written.end());
-}
-
-bool Normal::Faithful(TermId t) {
-  switch (arena_.op(t)) {
-    case Op::kNot:
-    case Op::kAnd:
-    case Op::kOr:
-    case Op::kIte:
-      return std::ranges::all_of(arena_.args(t), [this](TermId a) { return Faithful(a); });
-    case Op::kEq:
-      if (arena_.sort_of(arena_.arg(t, 0)) == arena_.Bool())
-        return Faithful(arena_.arg(t, 0)) && Faithful(arena_.arg(t, 1));
-      return FaithfulLiteral(t);
-    case Op::kLe:
-    case Op::kLt:
-      return FaithfulLiteral(t);
-    default:
-      return true;  // constants and variables
-  }
-}
-
-FormulaId Normal::Substitution::Apply(FormulaId id) {
-  if (const auto it = formulas_.find(id); it != formulas_.end()) return it->second;
-  const Formula f = normal_.formula(id);
-  FormulaId result = id;
-  if (f.kind == Formula::Kind::kLiteral) {
-    const PolyId p = ApplyTo(f.poly);
-    if (p != f.poly) result = normal_.Literal(Minus(normal_.poly(p), ConstantPoly(f.bound)), f.relation);
-  } else if (!f.parts.empty()) {
-    std::vector<FormulaId> parts;
-    for (const FormulaId part : f.parts) parts.push_back(Apply(part));
-    result = normal_.Junction(f.kind, std::move(parts));
-  }
-  formulas_.emplace(id, result);
-  return result;
-}
-
-PolyId Normal::Substitution::ApplyTo(PolyId id) {
-  if (const auto it = polys_.find(id); it != polys_.end()) return it->second;
-  const Poly p = normal_.poly(id);
-  Poly result;
-  for (const auto& [m, c] : p) {
-    Poly product = ConstantPoly(c);
-    for (const AtomId a : m) product = normal_.Times(product, Poly(normal_.poly(Atom(a))));
-    for (const auto& [n, d] : product) AddTo(result, n, d);
-  }
-  const PolyId done = normal_.Intern(std::move(result));
-  polys_.emplace(id, done);
-  return done;
-}
-
-PolyId Normal::Substitution::Atom(AtomId id) {
-  if (id == variable_) return value_;
-  if (const auto it = atoms_.find(id); it != atoms_.end()) return it->second;
-  certify::Atom a = normal_.atom(id);
-  for (PolyId& arg : a.args) arg = ApplyTo(arg);
-  PolyId result;
-  switch (a.kind) {
-    case certify::Atom::Kind::kVariable:
-      result = normal_.AtomPoly(std::move(a));
-      break;
-    case certify::Atom::Kind::kFunction:
-      result = normal_.Function(a.function, std::move(a.args));
-      break;
-    case certify::Atom::Kind::kQuotient: {
-      const auto value = ConstantOf(normal_.poly(a.args[1]));
-      result = value && !value->IsZero()
-                   ? normal_.Intern(normal_.Times(Poly(normal_.poly(a.args[0])), ConstantPoly(Rational(1) / *value)))
-                   : normal_.AtomPoly(std::move(a));
-      break;
-    }
-    case certify::Atom::Kind::kChoice:
-      result = normal_.Choice(Apply(a.condition), a.args[0], a.args[1]);
-      break;
-  }
-  atoms_.emplace(id, result);
-  return result;
 }
 
 }  // namespace rondo::solve::certify

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -28,6 +29,11 @@ struct Rejection : std::runtime_error {
 using Monomial = std::vector<AtomId>;
 using Poly = std::map<Monomial, Rational>;
 
+/// Adds a summand. Rejection if the polynomial grows too large.
+void AddTo(Poly& p, Monomial monomial, const Rational& coefficient);
+/// The number that the polynomial is, if it is one.
+std::optional<Rational> ConstantOf(const Poly& p);
+
 /// What a polynomial is made of: a variable, a function or quotient of polynomials, or a choice between two.
 struct Atom {
   enum class Kind : uint8_t { kVariable, kFunction, kQuotient, kChoice };
@@ -42,6 +48,9 @@ struct Atom {
 
 /// Which of <, = and > satisfy a comparison.
 enum Relation : uint8_t { kBelow = 1, kEven = 2, kAbove = 4 };
+
+/// The relation with its sides exchanged.
+uint8_t Mirrored(uint8_t relation);
 
 /// Formulas in negation normal form. A literal `poly relation bound`: no constant in the polynomial, first
 /// coefficient 1; comparisons of one integral variable have integers for bounds and are not strict.
@@ -68,9 +77,11 @@ class Normal {
 
   PolyId Number(TermId term);
   FormulaId Of(TermId formula, bool positive = true);
-  /// Do all partial functions of each literal, as written, occur in its normal form? Else the normal form says
-  /// less than what is written.
+  /// Do all partial functions of each literal, as written, occur in its normal form? Else the normal form
+  /// says less than what is written.
   bool Faithful(TermId formula);
+  /// Does no function occur in it that is not defined everywhere?
+  bool IsTotal(TermId term);
 
   /// `difference relation 0`.
   FormulaId Literal(const Poly& difference, uint8_t relation);
@@ -112,6 +123,7 @@ class Normal {
   FormulaId Compare(TermId a, TermId b, uint8_t relation);
   FormulaId Junction(Formula::Kind kind, std::vector<FormulaId> parts);
   PolyId Function(expr::Elementary function, std::vector<PolyId> args);
+  PolyId Quotient(std::vector<PolyId> args);
   PolyId Choice(FormulaId condition, PolyId then, PolyId otherwise);
   Poly Times(const Poly& a, const Poly& b);
   void AddProduct(Poly& out, Monomial monomial, const Rational& coefficient);
@@ -122,6 +134,7 @@ class Normal {
   void KeysOf(FormulaId formula, std::set<Key>& keys);
   void KeysOf(PolyId poly, std::set<Key>& keys);
   bool FaithfulLiteral(TermId literal);
+  std::set<Key> Written(TermId term);
 
   const expr::Arena& arena_;
   std::vector<Poly> polys_;

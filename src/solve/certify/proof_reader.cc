@@ -20,7 +20,8 @@ class ProofReader {
   bool Read(const SExpr& e, TermReader& terms) {
     const std::string& head = e.items[0].text;
     if (head == "let") {
-      if (e.items.size() != 3 || e.items[1].kind != SExpr::Kind::kSymbol) return Malformed(e, "(let name term)");
+      if (e.items.size() != 3 || e.items[1].kind != SExpr::Kind::kSymbol)
+        return Malformed(e, "(let name term)");
       const expr::TermId t = terms.Read(e.items[2]);
       if (t.valid()) terms.Declare(e.items[1], t);
     } else if (head == "substitute") {
@@ -33,6 +34,17 @@ class ProofReader {
                         : head == "case"  ? Step::Kind::kCase
                                           : Step::Kind::kCases;
       Add(kind, e, {terms.ReadFormula(e.items[1])});
+    } else if (head == "identity") {
+      std::vector<expr::TermId> parts;
+      for (size_t i = 1; i + 1 < e.items.size(); ++i) {
+        if (!e.items[i].IsList() || e.items[i].items.size() != 2)
+          return Malformed(e, "(identity (number term) ... number)");
+        parts.push_back(terms.Read(e.items[i].items[0]));
+        parts.push_back(terms.Read(e.items[i].items[1]));
+      }
+      if (parts.empty()) return Malformed(e, "(identity (number term) ... number)");
+      parts.push_back(terms.Read(e.items.back()));
+      Add(Step::Kind::kIdentity, e, std::move(parts));
     } else if (head == "end" || head == "contradiction") {
       if (e.items.size() != 1) return Malformed(e, fmt::format("({})", head));
       Add(head == "end" ? Step::Kind::kEnd : Step::Kind::kContradiction, e, {});

@@ -36,7 +36,8 @@ Contractor::Contractor(const Tape& tape, const interval::Kernels& kernels)
       possible_(tape.nodes.size()),
       needed_(tape.nodes.size()),
       comparisons_(tape.thresholds.size()),
-      adjoints_(tape.nodes.size() * kLanes) {
+      influence_(tape, kernels),
+      open_(tape.thresholds.size()) {
   for (size_t i = 0; i < tape.nodes.size(); ++i) {
     for (int l = 0; l < kLanes; ++l) {
       values_[i].nl[l] = -tape.constants[i].lo;
@@ -61,14 +62,14 @@ void Contractor::Store(int lane, double* box) const {
   }
 }
 
-Lanes Contractor::Contract() {
+Lanes Contractor::Contract(int sweeps) {
   again_ = false;
   Forward();
   Lanes alive = possible_[tape_.root];
-  for (int sweep = 0; alive != 0 && sweep < 2; ++sweep) {
+  for (int sweep = 1; alive != 0; ++sweep) {
     Backward();
     alive = static_cast<Lanes>(alive & ~Impossible());
-    if (sweep == 1 || alive == 0) break;
+    if (sweep >= sweeps || alive == 0) break;
     again_ = true;
     Forward();
     alive = static_cast<Lanes>(alive & possible_[tape_.root]);
@@ -80,6 +81,15 @@ Lanes Contractor::Evaluate() {
   again_ = false;
   Forward();
   return possible_[tape_.root];
+}
+
+void Contractor::Influence(std::vector<double>& scores) {
+  for (size_t t = 0; t < comparisons_.size(); ++t) {
+    const Comparison& c = comparisons_[t];
+    // An inequality that is not decided; of an equation, only equality is left.
+    open_[t] = static_cast<Lanes>((c.equal & (c.less | c.greater)) | (c.equal & ~c.less & ~c.greater));
+  }
+  influence_.Measure(values_, open_, scores);
 }
 
 Lanes Contractor::Impossible() const {

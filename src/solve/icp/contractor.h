@@ -3,14 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "interval/batch.h"
-#include "solve/icp/tape.h"
+#include "solve/icp/influence.h"
 
 namespace rondo::solve::icp {
-
-inline constexpr int kLanes = interval::kLanes;
-/// Lanes of a batch, as bits.
-using Lanes = uint8_t;
 
 /// Runs a tape over eight boxes at once: forward to enclose every number and to see which formulas are still
 /// possible, backward to remove what the formula excludes (HC4-revise over the shared graph, Benhamou et al.
@@ -26,13 +21,12 @@ class Contractor {
   void Load(int lane, const double* box);
   void Store(int lane, double* box) const;
 
-  /// Contracts all lanes. Returns those that may still hold a solution.
-  Lanes Contract();
+  /// Contracts all lanes, forward and backward so many times; what is known of the terms in between is kept
+  /// from one to the next. Returns those lanes that may still hold a solution.
+  Lanes Contract(int sweeps);
   /// Encloses all values and says in which lanes the formula is possible. Contracts nothing.
   Lanes Evaluate();
-  /// After Contract: how much each variable can change the undecided comparisons, by lane: sums over them of
-  /// |derivative| * width, relative to the width of the compared term (after SmearSumRel, Trombettoni et al.
-  /// 2011). A heuristic: rounding is not controlled. `scores` holds kLanes numbers for each variable.
+  /// After Contract: how much each variable can change what is undecided; see InfluenceMeter.
   void Influence(std::vector<double>& scores);
 
   interval::Interval ValueOf(uint32_t node, int lane) const {
@@ -59,7 +53,8 @@ class Contractor {
   std::vector<Lanes> possible_;          ///< formulas: not refuted
   std::vector<Lanes> needed_;  ///< formulas: must be true; numbers: must exist for the formula to be true
   std::vector<Comparison> comparisons_;
-  std::vector<double> adjoints_;
+  InfluenceMeter influence_;
+  std::vector<Lanes> open_;
   bool again_ = false;  ///< meet new enclosures with those of the sweep before
 };
 

@@ -86,7 +86,7 @@ class Decision {
 
   void WriteSearch(const Prepared& prepared, const Tape& tape, const std::vector<TreeNode>& tree) {
     for (const TermId c : Conjuncts(arena_, prepared)) proof_->Fact(Normalised(arena_, c));
-    for (const TermId l : prepared.lemmas) proof_->Fact(Normalised(arena_, l));
+    for (const Lemma& l : prepared.lemmas) proof_->Identity(l.parts, l.constant);
     std::vector<TermId> variables;
     for (const TapeVariable& v : tape.variables) variables.push_back(v.term);
     std::string text;

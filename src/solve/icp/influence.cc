@@ -1,9 +1,9 @@
-// Which variable decides? Derivatives by one reverse sweep over the tape, as sums of magnitudes.
+// Which variable decides? Interval derivatives of every undecided comparison by reverse sweeps over the tape.
+#include "solve/icp/influence.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "solve/icp/contractor.h"
 
 namespace rondo::solve::icp {
 
@@ -13,97 +13,201 @@ namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
+Batch Constant(double value) {
+  Batch b;
+  std::fill(std::begin(b.nl), std::end(b.nl), -value);
+  std::fill(std::begin(b.hi), std::end(b.hi), value);
+  return b;
+}
+
+// How large a derivative can be; bounded, so that sums stay numbers.
+double Magnitude(const Batch& b, int l) {
+  const double m = std::max(std::fabs(b.nl[l]), std::fabs(b.hi[l]));
+  return m < 1e9 ? m : 1e9;
+}
+
 bool IsNumber(NodeOp op) { return op < NodeOp::kThreshold; }
+
+bool IsBinary(NodeOp op) {
+  switch (op) {
+    case NodeOp::kAdd:
+    case NodeOp::kSub:
+    case NodeOp::kMul:
+    case NodeOp::kDiv:
+    case NodeOp::kMin:
+    case NodeOp::kMax:
+    case NodeOp::kAtan2:
+    case NodeOp::kChoose:
+      return true;
+    default:
+      return false;
+  }
+}
 
 }  // namespace
 
-void Contractor::Influence(std::vector<double>& scores) {
-  std::fill(adjoints_.begin(), adjoints_.end(), 0.0);
-  const auto adjoint = [&](uint32_t node) { return adjoints_.data() + static_cast<size_t>(node) * kLanes; };
-  const auto mag = [&](uint32_t node, int l) {
-    return std::max(std::fabs(values_[node].nl[l]), std::fabs(values_[node].hi[l]));
-  };
-  for (const Threshold& t : tape_.thresholds) {
-    if (t.lemma) continue;
-    const uint32_t node = tape_.nodes[t.node].a;
-    const Comparison& c = comparisons_[tape_.nodes[t.node].n];
-    // An inequality that is not decided; of an equation, only equality is left.
-    const auto open = static_cast<Lanes>(c.equal & (c.less | c.greater));
-    const auto equation = static_cast<Lanes>(c.equal & ~c.less & ~c.greater);
-    double* adj = adjoint(node);
-    for (int l = 0; l < kLanes; ++l) {
-      const double width = values_[node].hi[l] + values_[node].nl[l];
-      if ((open >> l & 1) != 0 && width > 0 && width < kInf) adj[l] += 1 / width;
-      if ((equation >> l & 1) != 0) adj[l] += 1;
+InfluenceMeter::InfluenceMeter(const Tape& tape, const interval::Kernels& kernels)
+    : tape_(tape), k_(kernels), adjoints_(tape.nodes.size()) {
+  std::vector<char> inside(tape.nodes.size());
+  std::map<uint32_t, size_t> cone_of;
+  for (size_t t = 0; t < tape.thresholds.size(); ++t) {
+    if (tape.thresholds[t].lemma) continue;
+    const uint32_t root = tape.nodes[tape.thresholds[t].node].a;
+    const auto [it, fresh] = cone_of.emplace(root, cones_.size());
+    if (fresh) cones_.emplace_back();
+    Cone& cone = cones_[it->second];
+    cone.thresholds.push_back(t);
+    if (!fresh) continue;
+    cone.root = root;
+    std::fill(inside.begin(), inside.end(), 0);
+    inside[cone.root] = 1;
+    for (uint32_t i = cone.root + 1; i-- > 0;) {
+      if (inside[i] == 0) continue;
+      const Node& n = tape.nodes[i];
+      cone.nodes.push_back(i);
+      if (n.op == NodeOp::kVariable || n.op == NodeOp::kConstant) continue;
+      inside[n.a] = 1;
+      if (IsBinary(n.op)) inside[n.b] = 1;
+    }
+    for (uint32_t v = 0; v < tape.variables.size(); ++v) {
+      if (inside[tape.variables[v].node] != 0) cone.variables.push_back(v);
     }
   }
-  for (uint32_t i = static_cast<uint32_t>(tape_.nodes.size()); i-- > 0;) {
+}
+
+void InfluenceMeter::Measure(const std::vector<Batch>& values, const std::vector<Lanes>& open,
+                             std::vector<double>& scores) {
+  scores.assign(tape_.variables.size() * kLanes, 0.0);
+  std::array<double, kLanes> sums{};
+  for (size_t c = 0; c < cones_.size(); ++c) {
+    const Cone& cone = cones_[c];
+    Lanes undecided = 0;
+    for (const size_t t : cone.thresholds) undecided = static_cast<Lanes>(undecided | open[t]);
+    if (undecided == 0 || cone.variables.empty()) continue;
+    Derive(cone, values);
+    sums.fill(0);
+    parts_.resize(cone.variables.size() * kLanes);
+    for (size_t i = 0; i < cone.variables.size(); ++i) {
+      const uint32_t node = tape_.variables[cone.variables[i]].node;
+      for (int l = 0; l < kLanes; ++l) {
+        const double width = std::min(1e9, values[node].hi[l] + values[node].nl[l]);
+        const double part = Magnitude(adjoints_[node], l) * width;
+        parts_[i * kLanes + static_cast<size_t>(l)] = part;
+        sums[static_cast<size_t>(l)] += part;
+      }
+    }
+    for (size_t i = 0; i < cone.variables.size(); ++i) {
+      for (size_t l = 0; l < kLanes; ++l) {
+        if ((undecided >> l & 1) != 0 && sums[l] > 0)
+          scores[cone.variables[i] * kLanes + l] += parts_[i * kLanes + l] / sums[l];
+      }
+    }
+  }
+}
+
+void InfluenceMeter::Derive(const Cone& cone, const std::vector<Batch>& values) {
+  const Batch zero = Constant(0);
+  for (const uint32_t i : cone.nodes) adjoints_[i] = zero;
+  adjoints_[cone.root] = Constant(1);
+  for (const uint32_t i : cone.nodes) {
     const Node& n = tape_.nodes[i];
-    if (!IsNumber(n.op)) continue;
-    const double* z = adjoint(i);
-    double* a = adjoint(n.a);
-    double* b = adjoint(n.b);
-    switch (n.op) {
-      case NodeOp::kVariable:
-      case NodeOp::kConstant:
-        break;
-      case NodeOp::kAdd:
-      case NodeOp::kSub:
-      case NodeOp::kMin:
-      case NodeOp::kMax:
-      case NodeOp::kChoose:
-        for (int l = 0; l < kLanes; ++l) a[l] += z[l];
-        for (int l = 0; l < kLanes; ++l) b[l] += z[l];
-        break;
-      case NodeOp::kMul:
-        for (int l = 0; l < kLanes; ++l) {
-          if (z[l] == 0) continue;
-          a[l] += z[l] * mag(n.b, l);
-          b[l] += z[l] * mag(n.a, l);
-        }
-        break;
-      case NodeOp::kDiv:
-        for (int l = 0; l < kLanes; ++l) {
-          const double mig = std::max({0.0, -values_[n.b].nl[l], -values_[n.b].hi[l]});
-          const double inverse = std::min(1e6, 1 / mig);
-          a[l] += z[l] * inverse;
-          b[l] += z[l] * inverse * std::min(1e6, mag(n.a, l) * inverse);
-        }
-        break;
-      case NodeOp::kSqr:
-        for (int l = 0; l < kLanes; ++l) a[l] += z[l] * 2 * mag(n.a, l);
-        break;
-      case NodeOp::kPow:
-        for (int l = 0; l < kLanes; ++l)
-          a[l] += z[l] * n.n * std::min(1e6, std::pow(mag(n.a, l), static_cast<double>(n.n) - 1));
-        break;
-      case NodeOp::kSqrt:
-        for (int l = 0; l < kLanes; ++l)
-          a[l] += z[l] * std::min(1e3, 0.5 / std::max(1e-6, -values_[i].nl[l]));
-        break;
-      case NodeOp::kExp:
-        for (int l = 0; l < kLanes; ++l) a[l] += z[l] * std::min(1e6, mag(i, l));
-        break;
-      case NodeOp::kSin:
-      case NodeOp::kCos:
-        // |derivative| = sqrt(1 - z^2) at its largest.
-        for (int l = 0; l < kLanes; ++l) {
-          const double mig = std::max({0.0, -values_[i].nl[l], -values_[i].hi[l]});
-          a[l] += z[l] * std::sqrt(std::max(0.0, 1 - mig * mig));
-        }
-        break;
-      case NodeOp::kAtan2:
-        for (int l = 0; l < kLanes; ++l) a[l] += z[l], b[l] += z[l];
-        break;
-      default:
-        for (int l = 0; l < kLanes; ++l) a[l] += z[l];
-    }
+    if (IsNumber(n.op) && n.op != NodeOp::kVariable && n.op != NodeOp::kConstant) Pass(n, i, values);
   }
-  scores.resize(tape_.variables.size() * kLanes);
-  for (size_t v = 0; v < tape_.variables.size(); ++v) {
-    const Batch& b = values_[tape_.variables[v].node];
-    const double* adj = adjoint(tape_.variables[v].node);
-    for (int l = 0; l < kLanes; ++l) scores[v * kLanes + l] = adj[l] * (b.hi[l] + b.nl[l]);
+}
+
+// Adds what the derivative of node `i` means for its arguments.
+void InfluenceMeter::Pass(const Node& n, uint32_t i, const std::vector<Batch>& values) {
+  const Batch& z = adjoints_[i];
+  const Batch& a = values[n.a];
+  const Batch& b = values[n.b];
+  Batch d, e;
+  const auto add = [&](uint32_t node, const Batch& part) { k_.add(adjoints_[node], part, adjoints_[node]); };
+  const auto times = [&](uint32_t node, const Batch& factor) {
+    Batch product;
+    k_.mul(z, factor, product);
+    add(node, product);
+  };
+  const auto maybe = [&](uint32_t node) {  // z, or nothing
+    Batch part;
+    k_.hull(z, Constant(0), part);
+    add(node, part);
+  };
+  switch (n.op) {
+    case NodeOp::kAdd:
+      add(n.a, z);
+      add(n.b, z);
+      return;
+    case NodeOp::kSub:
+      add(n.a, z);
+      k_.neg(z, d);
+      add(n.b, d);
+      return;
+    case NodeOp::kNeg:
+      k_.neg(z, d);
+      add(n.a, d);
+      return;
+    case NodeOp::kMul:
+      times(n.a, b);
+      times(n.b, a);
+      return;
+    case NodeOp::kDiv:
+      k_.div(Constant(1), b, d);
+      times(n.a, d);
+      k_.mul(d, values[i], e);
+      k_.neg(e, e);
+      times(n.b, e);
+      return;
+    case NodeOp::kSqr:
+      k_.add(a, a, d);
+      times(n.a, d);
+      return;
+    case NodeOp::kPow:
+      k_.pow(a, static_cast<int>(n.n) - 1, d);
+      k_.mul(d, Constant(n.n), d);
+      times(n.a, d);
+      return;
+    case NodeOp::kSqrt:
+      k_.div(Constant(0.5), values[i], d);
+      times(n.a, d);
+      return;
+    case NodeOp::kSin:
+      k_.cos(a, d);
+      times(n.a, d);
+      return;
+    case NodeOp::kCos:
+      k_.sin(a, d);
+      k_.neg(d, d);
+      times(n.a, d);
+      return;
+    case NodeOp::kExp:
+      times(n.a, values[i]);
+      return;
+    case NodeOp::kLog:
+      k_.div(Constant(1), a, d);
+      times(n.a, d);
+      return;
+    case NodeOp::kAtan:
+      k_.sqr(a, d);
+      k_.add(d, Constant(1), d);
+      k_.div(Constant(1), d, d);
+      times(n.a, d);
+      return;
+    case NodeOp::kTan:
+      k_.sqr(values[i], d);
+      k_.add(d, Constant(1), d);
+      times(n.a, d);
+      return;
+    case NodeOp::kMin:
+    case NodeOp::kMax:
+    case NodeOp::kChoose:
+    case NodeOp::kAtan2:
+      maybe(n.a);
+      maybe(n.b);
+      return;
+    default:  // abs, asin, acos: of either sign
+      k_.neg(z, d);
+      k_.hull(z, d, e);
+      add(n.a, e);
   }
 }
 

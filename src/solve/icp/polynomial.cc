@@ -76,6 +76,8 @@ TermId CompleteSquares(Arena& arena, Polynomial p) {
     const TermId root = ToTerm(arena, line);
     squares.push_back(arena.Mul(arena.Number(arena.Real(), a), arena.Mul(root, root)));
   }
+  // Without squares, multiplying out would only tear factors apart.
+  if (squares.empty()) return {};
   squares.push_back(ToTerm(arena, p));
   return arena.Add(std::move(squares));
 }

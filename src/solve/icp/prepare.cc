@@ -5,7 +5,6 @@
 #include "base/check.h"
 #include "expr/substitute.h"
 #include "solve/icp/polynomial.h"
-#include "solve/icp/rotation.h"
 
 namespace rondo::solve::icp {
 
@@ -54,7 +53,8 @@ namespace {
 
 class Preparation {
  public:
-  Preparation(Arena& arena, const std::unordered_map<TermId, Variable>& variables, Prepared& out, Proof* proof)
+  Preparation(Arena& arena, const std::unordered_map<TermId, Variable>& variables, Prepared& out,
+              Proof* proof)
       : arena_(arena), variables_(variables), out_(out), proof_(proof) {}
 
   void Run(std::vector<TermId> conjuncts) {

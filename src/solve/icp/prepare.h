@@ -8,6 +8,7 @@
 #include "solve/icp/literal.h"
 #include "solve/icp/lower.h"
 #include "solve/icp/proof.h"
+#include "solve/icp/rotation.h"
 
 namespace rondo::solve::icp {
 
@@ -32,7 +33,7 @@ struct Prepared {
   std::map<TermId, Range> ranges;  ///< by the term of the literals: bounds of variables are among them
   std::vector<TermId> disjunctions;
   /// True for all values of the variables: for contraction only.
-  std::vector<TermId> lemmas;
+  std::vector<Lemma> lemmas;
   /// variable = term over the variables that are left.
   std::vector<std::pair<TermId, TermId>> definitions;
 };
@@ -40,8 +41,8 @@ struct Prepared {
 /// Equivalent to the conjunction of `conjuncts`, up to the definitions: every solution of the result extends
 /// to one of the conjuncts by the definitions, and every solution of the conjuncts arises so. Uses linear
 /// equations to eliminate variables, turns bounds of square roots into bounds of their arguments, splits
-/// vanishing sums of squares, and merges all comparisons of one term; everything in exact arithmetic. `proof`,
-/// if there is one, gets the steps that a checker cannot see by itself.
+/// vanishing sums of squares, and merges all comparisons of one term; everything in exact arithmetic.
+/// `proof`, if there is one, gets the steps that a checker cannot see by itself.
 Prepared Prepare(expr::Arena& arena, const std::unordered_map<TermId, Variable>& variables,
                  std::vector<TermId> conjuncts, std::vector<std::pair<TermId, TermId>> definitions,
                  Proof* proof = nullptr);

@@ -45,6 +45,19 @@ void Proof::Fact(TermId formula) { Step("fact", formula); }
 void Proof::Cases(TermId disjunction) { Step("cases", disjunction); }
 void Proof::Case(TermId alternative) { Step("case", alternative); }
 
+std::string Proof::Say(const Rational& value) {
+  const bool negative = value < Rational(0);
+  const Rational size = negative ? Rational(0) - value : value;
+  const std::string text = fmt::format("(/ {}.0 {}.0)", size.Numerator(), size.Denominator());
+  return negative ? fmt::format("(- {})", text) : text;
+}
+
+void Proof::Identity(const std::vector<std::pair<Rational, TermId>>& parts, const Rational& constant) {
+  std::string said;
+  for (const auto& [coefficient, term] : parts) said += fmt::format("({} {}) ", Say(coefficient), Say(term));
+  text_ += fmt::format("(identity {}{})\n", said, Say(constant));
+}
+
 void Proof::Search(const std::vector<TermId>& variables, const std::string& tree) {
   text_ += "(search (";
   for (size_t v = 0; v < variables.size(); ++v)

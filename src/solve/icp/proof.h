@@ -18,6 +18,8 @@ class Proof {
   void Substitute(TermId variable, TermId value);
   void Squares(TermId formula);
   void Fact(TermId formula);
+  /// constant + the sum of coefficient * term = 0
+  void Identity(const std::vector<std::pair<Rational, TermId>>& parts, const Rational& constant);
   void Cases(TermId disjunction);
   void Case(TermId alternative);
   void End() { text_ += "(end)\n"; }
@@ -29,6 +31,7 @@ class Proof {
  private:
   void Step(const char* head, TermId formula);
   std::string Say(TermId term);
+  static std::string Say(const Rational& value);
 
   const expr::Arena& arena_;
   expr::SmtPrinter printer_;

@@ -182,17 +182,52 @@ expr::TermId Rotations::Square(TermId term) {
   return arena_.Mul(arena_.Number(arena_.Real(), lead * lead), arena_.Mul(monic, monic));
 }
 
-std::vector<expr::TermId> Rotations::Lemmas() {
-  std::vector<TermId> result;
+Rotations::Norm Rotations::NormOf(TermId a, TermId b) {
+  Norm norm;
+  for (size_t i = 0; i < 2; ++i) {
+    const auto [lead, monic] = Monic(arena_, i == 0 ? a : b);
+    norm.squares[i] = {lead * lead, monic};
+  }
+  norm.sum = arena_.Add(Square(a), Square(b));
+  return norm;
+}
+
+std::vector<Lemma> Rotations::Lemmas() {
+  std::vector<Lemma> result;
+  std::vector<Norm> norms;
   for (const auto& [angle, frames] : frames_) {
     for (const Frame& f : frames) {
       if (!f.both) continue;
-      const TermId before = arena_.Add(Square(f.a), Square(f.b));
-      const TermId after = arena_.Add(Square(f.p), Square(f.q));
-      result.push_back(arena_.Eq(before, after));
+      norms.push_back(NormOf(f.a, f.b));
+      norms.push_back(NormOf(f.p, f.q));
+      result.push_back({{{Rational(1), norms[norms.size() - 2].sum}, {Rational(-1), norms.back().sum}}, Rational(0)});
     }
   }
+  Translations(norms, result);
   return result;
+}
+
+// k (r + d)^2 + l s^2 = (k r^2 + l s^2) + 2 k d r + k d^2, for norms that have s in common, up to a factor.
+void Rotations::Translations(const std::vector<Norm>& norms, std::vector<Lemma>& lemmas) {
+  for (size_t i = 0; i < norms.size(); ++i) {
+    for (size_t j = 0; j < norms.size(); ++j) {
+      for (const auto& [m, n] : {std::pair(0u, 0u), std::pair(0u, 1u), std::pair(1u, 0u), std::pair(1u, 1u)}) {
+        const auto& [k, r] = norms[i].squares[m];
+        const auto& [l, s] = norms[i].squares[1 - m];
+        const auto& [moved_k, moved_r] = norms[j].squares[n];
+        const auto& [moved_l, moved_s] = norms[j].squares[1 - n];
+        if (s != moved_s || r == moved_r || k * moved_l != l * moved_k) continue;
+        const TermId distance = arena_.Sub(moved_r, r);
+        if (!arena_.IsNumber(distance)) continue;
+        const Rational d = arena_.number(distance);
+        if (i > j) continue;  // the same, seen from the other side
+        lemmas.push_back({{{k / moved_k, norms[j].sum},
+                           {Rational(-1), norms[i].sum},
+                           {Rational(-2) * k * d, r}},
+                          Rational(-1) * k * d * d});
+      }
+    }
+  }
 }
 
 }  // namespace rondo::solve::icp

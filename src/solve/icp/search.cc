@@ -8,11 +8,14 @@
 #include <thread>
 
 #include "solve/icp/contractor.h"
+#include "solve/icp/descent.h"
 
 namespace rondo::solve::icp {
 namespace {
 
 using Kind = SearchResult::Kind;
+
+constexpr int kDescents = 12;
 
 /// What the threads of one search share.
 class Shared {
@@ -114,9 +117,7 @@ class Shared {
     for (const TapeVariable& v : tape.variables) root.insert(root.end(), {v.root.lo, v.root.hi});
     Contractor contractor(tape, *options.kernels);
     for (int l = 0; l < kLanes; ++l) contractor.Load(l, root.data());
-    for (int i = 0; i < kRootContractions; ++i) {
-      if (contractor.Contract() == 0) return false;
-    }
+    if (contractor.Contract(kRootSweeps) == 0) return false;
     contractor.Store(0, root.data());
     return true;
   }
@@ -125,7 +126,7 @@ class Shared {
 
  private:
   static constexpr int kUndecidedLimit = 32;
-  static constexpr int kRootContractions = 4;
+  static constexpr int kRootSweeps = 20;
   std::mutex mutex_, tree_mutex_, verify_mutex_;
   std::condition_variable wake_;
   std::atomic<unsigned> waiting_{0};
@@ -196,7 +197,7 @@ class Worker {
     shared_.boxes.fetch_add(n, std::memory_order_relaxed);
     ++steps_;
     const auto used = static_cast<Lanes>((1u << n) - 1);
-    const auto alive = static_cast<Lanes>(contractor_.Contract() & used);
+    const auto alive = static_cast<Lanes>(contractor_.Contract(kSweeps) & used);
     if (alive == 0) return;
     if ((steps_ < 256 || steps_ % 8 == 0) && Probe(alive)) return;
     contractor_.Influence(scores_);
@@ -294,9 +295,7 @@ class Worker {
   // A box that contraction has just made small may be empty after some more.
   bool StillEmpties() {
     for (int l = 0; l < kLanes; ++l) points_.Load(l, box_.data());
-    for (int i = 0; i < 8; ++i) {
-      if (points_.Contract() == 0) return true;
-    }
+    if (points_.Contract(kLastSweeps) == 0) return true;
     points_.Store(0, box_.data());
     return false;
   }
@@ -306,7 +305,9 @@ class Worker {
     return std::isfinite(scale) && scale > 0 ? Width(v) / scale : std::min(1.0, Width(v));
   }
 
-  static constexpr double kAspect = 0.05;
+  static constexpr double kAspect = 0.1;
+  static constexpr int kLastSweeps = 20;
+  static constexpr int kSweeps = 2;
   Shared& shared_;
   const Tape& tape_;
   size_t count_;
@@ -324,6 +325,13 @@ SearchResult Search(const Tape& tape, const SearchOptions& options) {
   Shared shared(tape, options);
   ++shared.boxes;
   if (!shared.Start()) return shared.Result();
+  Descent descent(tape, shared.root);
+  for (int i = 0; i < kDescents && !options.stop.StopRequested(); ++i) {
+    auto point = descent.Try();
+    if (!point || !shared.Verify(*point)) continue;
+    shared.Finish(Kind::kPoint, std::move(*point), {});
+    return shared.Result();
+  }
   const unsigned threads = std::max(1u, options.jobs);
   std::vector<std::unique_ptr<Worker>> workers;
   for (unsigned i = 0; i < threads; ++i) workers.push_back(std::make_unique<Worker>(shared, threads));

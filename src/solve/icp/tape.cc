@@ -40,7 +40,7 @@ class Builder {
     }
     for (const TermId d : prepared.disjunctions) parts.push_back(Formula(d));
     const size_t own = tape_.thresholds.size();
-    for (const TermId l : prepared.lemmas) parts.push_back(Formula(l));
+    for (const Lemma& l : prepared.lemmas) parts.push_back(Identity(l));
     for (size_t t = own; t < tape_.thresholds.size(); ++t) tape_.thresholds[t].lemma = true;
     tape_.root = Junction(NodeOp::kAnd, parts);
     MarkSingle();
@@ -214,17 +214,20 @@ class Builder {
   }
 
   uint32_t Atom(const Literal& literal) {
-    const uint32_t node = Number(literal.term);
-    const auto key = std::pair(node, literal.bound.ToString());
+    return Compare(Number(literal.term), literal.relation, literal.bound);
+  }
+
+  uint32_t Compare(uint32_t node, Relation relation, const Rational& bound) {
+    const auto key = std::pair(node, bound.ToString());
     auto it = threshold_of_.find(key);
     if (it == threshold_of_.end()) {
       const auto index = static_cast<uint32_t>(tape_.thresholds.size());
       const uint32_t id = Push(NodeOp::kThreshold, node, 0, index);
-      const Interval enclosure = Enclose(literal.bound);
-      tape_.thresholds.push_back({id, literal.bound, enclosure.lo, enclosure.hi, false});
+      const Interval enclosure = Enclose(bound);
+      tape_.thresholds.push_back({id, bound, enclosure.lo, enclosure.hi, false});
       it = threshold_of_.emplace(key, id).first;
     }
-    return Push(NodeOp::kAtom, it->second, 0, literal.relation);
+    return Push(NodeOp::kAtom, it->second, 0, relation);
   }
 
   uint32_t Formula(TermId t) {
@@ -251,6 +254,17 @@ class Builder {
     return id;
   }
 
+  uint32_t Identity(const Lemma& lemma) {
+    std::optional<uint32_t> sum;
+    for (const auto& [coefficient, term] : lemma.parts) {
+      uint32_t id = Number(term);
+      const bool negative = sum && coefficient == Rational(-1);
+      if (!negative && coefficient != Rational(1)) id = Push(NodeOp::kMul, Constant(coefficient), id);
+      sum = sum ? Push(negative ? NodeOp::kSub : NodeOp::kAdd, *sum, id) : id;
+    }
+    return Compare(*sum, kEqual, Rational(0) - lemma.constant);
+  }
+
   uint32_t Junction(NodeOp op, const std::vector<uint32_t>& parts) {
     const auto first = static_cast<uint32_t>(tape_.children.size());
     tape_.children.insert(tape_.children.end(), parts.begin(), parts.end());
@@ -264,7 +278,7 @@ class Builder {
     for (uint32_t i = static_cast<uint32_t>(tape_.nodes.size()); i-- > 0;) {
       const Node& n = tape_.nodes[i];
       const auto use = [&](uint32_t argument) {
-        single_[argument] = single_[argument] && ++uses[argument] == 1 && single_[i];
+        single_[argument] = ++uses[argument] == 1;
       };
       switch (n.op) {
         case NodeOp::kVariable:
