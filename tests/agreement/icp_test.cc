@@ -266,6 +266,71 @@ TEST_P(KnownAnswers, Hold) {
   EXPECT_EQ(Solve(kReals + GetParam().script), GetParam().answer) << GetParam().what;
 }
 
+// Questions that other solvers were reported to answer wrongly, with the report.
+INSTANTIATE_TEST_SUITE_P(
+    Reported, KnownAnswers,
+    testing::Values(
+        Known{"dreal3 #4: a cart and its pole at rest",
+              "(declare-fun u () Real)(declare-fun w () Real)(assert (<= -10 x 10))(assert (<= -4 y 4))"
+              "(assert (<= -10 w 10))(assert (<= -10 u 10))(assert (= w 0))(assert (= x 0))"
+              "(assert (= (/ (+ (* (sin y) (^ w 2)) (* 9.8 (cos y) (sin y)) u) (+ (^ (sin y) 2) 2)) 0))"
+              "(assert (= (/ (+ (* (sin y) (cos y) (^ w 2)) (* 3 9.8 (sin y)) (* (cos y) u))"
+              " (- (+ (^ (sin y) 2) 2))) 0))",
+              "sat"},
+        Known{"dreal3 #12: not above",
+              "(assert (<= 0.3999996185302735 x 0.39999985694885254))(assert (not (> (+ (* (- 1 0) x) 0) 0.4)))",
+              "sat"},
+        Known{"dreal3 #12: above",
+              "(assert (<= 0.3999996185302735 x 0.39999985694885254))(assert (> (+ (* (- 1 0) x) 0) 0.4))", "unsat"},
+        Known{"dreal3 #49: a product of three",
+              "(assert (<= -10000 x 10000))(assert (<= -10000 y 10000))"
+              "(assert (<= 0 (+ (* (- 1) 0.9999999999999567 x) (* (- 120) 0.999999999999935 y))))",
+              "sat"},
+        Known{"dreal3 #129: the quotient is above 1, so nothing holds of its arc sine",
+              "(assert (<= 0.5312500000000001 x 0.5625))(assert (<= 0.5000000000000001 y 0.53125))"
+              "(assert (> (asin (/ (+ (* 4 x) -2) (+ (* 4 y) -2))) 0.15915494309190006))",
+              "unsat"},
+        Known{"dreal3 #129: its negation, where the other part fails",
+              "(assert (<= 0.5312500000000001 x 0.5625))(assert (<= 0.5000000000000001 y 0.53125))"
+              "(assert (not (and (<= (abs (- (+ (^ (- (* 4 x) 2) 2) (^ (- (* 4 y) 2) 2)) 0.1)) 0.0001)"
+              "(> (asin (/ (+ (* 4 x) -2) (+ (* 4 y) -2))) 0.15915494309190006))))",
+              "sat"},
+        Known{"dreal2 #54: a sum of powers",
+              "(assert (< -2 x 2))(assert (< -2 y 2))(assert (< (+ (^ x 2) (^ y 3)) 0))", "sat"},
+        Known{"dreal4 #258: atan2 of anything", "(assert (= z (atan2 3 y)))", "sat"},
+        Known{"dreal4 #305: integers that differ",
+              "(declare-fun i () Int)(declare-fun j () Int)(assert (<= 0 i))(assert (< i 1))(assert (<= 0 j))"
+              "(assert (< j 1))(assert (not (= i j)))",
+              "unsat"},
+        Known{"z3 #5161",
+              "(assert (>= (* x x) 0))(assert (> 0 (* x (- 1 x))))(assert (> 0 (- (ite (= x 0) 0 1))))"
+              "(assert (> 0 (+ x (* y (- y)))))(assert (>= x 0))",
+              "sat"},
+        Known{"z3 #6130",
+              "(declare-fun a () Real)(declare-fun b () Real)(declare-fun c () Real)(declare-fun d () Real)"
+              "(assert (= 0 (+ (* x y) (* a z x) (* z x b) (* x b (- 1)) (* z x y (- 1)))))"
+              "(assert (= 0 (+ c (* x y) (* a z x) (* z x b) (* x b (- 1)) (* c y (- 1)) (* z x y (- 1)) (* c d y "
+              "(- 1)))))"
+              "(assert (and (< 0 (* x x)) (> z 0) (> c 0)))(assert (= d (+ c 1.0)))",
+              "sat"},
+        Known{"z3 #6947", "(assert (< x 0))(assert (= (* x x) 2))", "sat"},
+        Known{"z3 #9139: a quotient of equals",
+              "(declare-fun k () Int)"
+              "(assert (= (to_real k) (- (/ (/ (+ 3 x) (+ (- (- 3)) 2)) (/ (+ 3 x) (+ (- (- 3)) 2))) x)))"
+              "(assert (< -2 x))",
+              "sat"},
+        Known{"cvc5 #5726: high powers near 0",
+              "(assert (not (<= (* y y y y y y) 0)))(assert (<= -1 x 1))(assert (<= -1 y 1))"
+              "(assert (not (<= (* x (* x (- x (+ x (* x x (+ (* y (- y (/ 1 720))) (* x x))))))) 0)))",
+              "sat"},
+        Known{"cvc5 #8638",
+              "(declare-fun a () Real)(declare-fun b () Real)(declare-fun c () Real)(assert (< 13 c 19))"
+              "(assert (< -11 a))(assert (< a (/ (+ y z (- b)) c)))(assert (< 16 b 48))(assert (> (* y y y y b) 0))"
+              "(assert (> (* y (+ 1 (* z (/ (- 1) 2)) (* y y z (/ 1 6)))) 0))(assert (> z (/ 15707963 5000000)))"
+              "(assert (> (/ 31415927 10000000) z))(assert (> (* z (/ 1 2)) y))(assert (> x 0))(assert (> y x))",
+              "sat"}),
+    [](const auto& chosen) { return "Case" + std::to_string(chosen.index); });
+
 INSTANTIATE_TEST_SUITE_P(
     All, KnownAnswers,
     testing::Values(

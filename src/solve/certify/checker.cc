@@ -132,7 +132,8 @@ class Checker {
 
   std::vector<std::pair<Rational, expr::TermId>> Parts(const std::vector<expr::TermId>& terms) const {
     std::vector<std::pair<Rational, expr::TermId>> parts;
-    for (size_t i = 0; i + 1 < terms.size(); i += 2) parts.emplace_back(arena_.number(terms[i]), terms[i + 1]);
+    for (size_t i = 0; i + 1 < terms.size(); i += 2)
+      parts.emplace_back(arena_.number(terms[i]), terms[i + 1]);
     return parts;
   }
 
@@ -142,7 +143,8 @@ class Checker {
       const bool number = i % 2 == 0;
       if (arena_.sort_of(terms[i]) == arena_.Bool() || (number && !arena_.IsNumber(terms[i])))
         throw Rejection("numbers and terms should alternate here");
-      if (!number && !normal_.IsTotal(terms[i])) throw Rejection("a term of the identity is not defined everywhere");
+      if (!number && !normal_.IsTotal(terms[i]))
+        throw Rejection("a term of the identity is not defined everywhere");
     }
     Poly sum = Normal::ConstantPoly(arena_.number(terms.back()));
     for (const auto& [c, term] : Parts(terms)) {

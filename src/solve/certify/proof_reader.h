@@ -13,7 +13,8 @@ namespace rondo::solve::certify {
 ///     (substitute VARIABLE TERM)       the variable is known to equal the term, and is replaced by it
 ///     (squares FORMULA)                a known sum of squares that is at most 0: each square is 0
 ///     (fact FORMULA)                   known, up to arithmetic; for the searches that follow
-///     (identity (C TERM) ... C)        numbers C: the sum of the products and the last number is 0, whatever the
+///     (identity (C TERM) ... C)        numbers C: the sum of the products and the last number is 0, whatever
+///     the
 ///                                      variables are; a fact
 ///     (cases FORMULA)                  one of the alternatives of a known disjunction holds
 ///     (case FORMULA) ... (end)         an alternative and the steps that refute it; behind the last one,
@@ -23,11 +24,21 @@ namespace rondo::solve::certify {
 /// TREE: a box and its parts, from the outside in: `.` for a box that contraction empties, `V C` and two
 /// trees for one that is split at `C`, where `V` counts the variables from 0.
 struct Step {
-  enum class Kind : uint8_t { kSubstitute, kSquares, kFact, kIdentity, kCases, kCase, kEnd, kContradiction, kSearch };
+  enum class Kind : uint8_t {
+    kSubstitute,
+    kSquares,
+    kFact,
+    kIdentity,
+    kCases,
+    kCase,
+    kEnd,
+    kContradiction,
+    kSearch
+  };
   Kind kind;
   diag::Span span;
   std::vector<expr::TermId> terms;  ///< of kIdentity: each number and its term, then the last number
-  std::string text;  ///< of kSearch: the tree
+  std::string text;                 ///< of kSearch: the tree
 };
 
 /// A script, whose assertions are refuted, and the proof behind it.

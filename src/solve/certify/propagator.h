@@ -21,7 +21,8 @@ class Propagator {
   /// All that are required hold together. Rejection for terms that it does not know.
   void Require(expr::TermId formula);
   /// constant + the sum of coefficient * term = 0; the terms are kept whole.
-  void RequireSum(const std::vector<std::pair<expr::Rational, expr::TermId>>& parts, const expr::Rational& constant);
+  void RequireSum(const std::vector<std::pair<expr::Rational, expr::TermId>>& parts,
+                  const expr::Rational& constant);
 
   /// The variables met so far, in the order of a Box.
   const std::vector<expr::TermId>& variables() const { return variables_; }

@@ -28,22 +28,6 @@ double Magnitude(const Batch& b, int l) {
 
 bool IsNumber(NodeOp op) { return op < NodeOp::kThreshold; }
 
-bool IsBinary(NodeOp op) {
-  switch (op) {
-    case NodeOp::kAdd:
-    case NodeOp::kSub:
-    case NodeOp::kMul:
-    case NodeOp::kDiv:
-    case NodeOp::kMin:
-    case NodeOp::kMax:
-    case NodeOp::kAtan2:
-    case NodeOp::kChoose:
-      return true;
-    default:
-      return false;
-  }
-}
-
 }  // namespace
 
 InfluenceMeter::InfluenceMeter(const Tape& tape, const interval::Kernels& kernels)

@@ -200,7 +200,8 @@ std::vector<Lemma> Rotations::Lemmas() {
       if (!f.both) continue;
       norms.push_back(NormOf(f.a, f.b));
       norms.push_back(NormOf(f.p, f.q));
-      result.push_back({{{Rational(1), norms[norms.size() - 2].sum}, {Rational(-1), norms.back().sum}}, Rational(0)});
+      result.push_back(
+          {{{Rational(1), norms[norms.size() - 2].sum}, {Rational(-1), norms.back().sum}}, Rational(0)});
     }
   }
   Translations(norms, result);
@@ -211,7 +212,8 @@ std::vector<Lemma> Rotations::Lemmas() {
 void Rotations::Translations(const std::vector<Norm>& norms, std::vector<Lemma>& lemmas) {
   for (size_t i = 0; i < norms.size(); ++i) {
     for (size_t j = 0; j < norms.size(); ++j) {
-      for (const auto& [m, n] : {std::pair(0u, 0u), std::pair(0u, 1u), std::pair(1u, 0u), std::pair(1u, 1u)}) {
+      for (const auto& [m, n] :
+           {std::pair(0u, 0u), std::pair(0u, 1u), std::pair(1u, 0u), std::pair(1u, 1u)}) {
         const auto& [k, r] = norms[i].squares[m];
         const auto& [l, s] = norms[i].squares[1 - m];
         const auto& [moved_k, moved_r] = norms[j].squares[n];
@@ -221,10 +223,9 @@ void Rotations::Translations(const std::vector<Norm>& norms, std::vector<Lemma>&
         if (!arena_.IsNumber(distance)) continue;
         const Rational d = arena_.number(distance);
         if (i > j) continue;  // the same, seen from the other side
-        lemmas.push_back({{{k / moved_k, norms[j].sum},
-                           {Rational(-1), norms[i].sum},
-                           {Rational(-2) * k * d, r}},
-                          Rational(-1) * k * d * d});
+        lemmas.push_back(
+            {{{k / moved_k, norms[j].sum}, {Rational(-1), norms[i].sum}, {Rational(-2) * k * d, r}},
+             Rational(-1) * k * d * d});
       }
     }
   }

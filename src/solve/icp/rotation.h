@@ -21,8 +21,8 @@ struct Lemma {
 /// combinations, for vectors (A, B) of polynomials. Sums are rewritten over these coordinates, so that all
 /// sums about one vector share them, and the lemma |rotated vector|^2 = |vector|^2 ties them to the vector:
 /// without it, interval arithmetic must split the angle to learn that a rotation moves nothing away from the
-/// origin. In a chain of frames, |v + d|^2 = |v|^2 + 2 d v + d^2 ties the vector that leaves one frame to the one
-/// that enters the next, a link further.
+/// origin. In a chain of frames, |v + d|^2 = |v|^2 + 2 d v + d^2 ties the vector that leaves one frame to the
+/// one that enters the next, a link further.
 class Rotations {
  public:
   explicit Rotations(expr::Arena& arena) : arena_(arena) {}

@@ -43,9 +43,8 @@ class Builder {
     for (const Lemma& l : prepared.lemmas) parts.push_back(Identity(l));
     for (size_t t = own; t < tape_.thresholds.size(); ++t) tape_.thresholds[t].lemma = true;
     tape_.root = Junction(NodeOp::kAnd, parts);
-    MarkSingle();
+    MarkSingle(tape_);
     for (TapeVariable& v : tape_.variables) {
-      v.single = single_[v.node];
       const auto it = prepared.ranges.find(v.term);
       if (it == prepared.ranges.end()) continue;
       if (it->second.lo) v.root.lo = Enclose(*it->second.lo).lo;
@@ -271,40 +270,6 @@ class Builder {
     return Push(op, first, 0, static_cast<uint32_t>(parts.size()));
   }
 
-  // Marks the nodes of which a number is made only once, and so on up to the comparisons.
-  void MarkSingle() {
-    std::vector<uint32_t> uses(tape_.nodes.size());
-    single_.assign(tape_.nodes.size(), true);
-    for (uint32_t i = static_cast<uint32_t>(tape_.nodes.size()); i-- > 0;) {
-      const Node& n = tape_.nodes[i];
-      const auto use = [&](uint32_t argument) {
-        single_[argument] = ++uses[argument] == 1;
-      };
-      switch (n.op) {
-        case NodeOp::kVariable:
-        case NodeOp::kConstant:
-        case NodeOp::kThreshold:
-        case NodeOp::kAtom:
-        case NodeOp::kAnd:
-        case NodeOp::kOr:
-          break;
-        case NodeOp::kAdd:
-        case NodeOp::kSub:
-        case NodeOp::kMul:
-        case NodeOp::kDiv:
-        case NodeOp::kMin:
-        case NodeOp::kMax:
-        case NodeOp::kAtan2:
-        case NodeOp::kChoose:
-          use(n.a);
-          use(n.b);
-          break;
-        default:
-          use(n.a);
-      }
-    }
-  }
-
   Arena& arena_;
   const std::unordered_map<TermId, Variable>& variables_;
   Tape& tape_;
@@ -312,7 +277,6 @@ class Builder {
   std::unordered_map<std::string, uint32_t> numbers_;
   std::unordered_map<TermId, uint32_t> terms_, formulas_;
   std::map<std::pair<uint32_t, std::string>, uint32_t> threshold_of_;
-  std::vector<bool> single_;
 };
 
 }  // namespace

@@ -63,8 +63,7 @@ struct TapeVariable {
   TermId term;
   uint32_t node;
   bool integral;
-  /// Is it used once, in a number that is used once, and so on? Contraction is exact for such variables,
-  /// given the others.
+  /// Is it no use to split it? See MarkSingle.
   bool single;
   interval::Interval root;  ///< encloses all values that the bounds allow
 };
@@ -79,6 +78,13 @@ struct Tape {
   uint32_t root = 0;
   bool partial = false;  ///< does a function occur that is not defined everywhere?
 };
+
+/// Is the node made of two numbers?
+bool IsBinary(NodeOp op);
+
+/// Marks the variables that need not be split: those used once, in a number that is used once, and so on, for
+/// which contraction is exact, given the others; and those used once, in a sum with a variable that is split.
+void MarkSingle(Tape& tape);
 
 /// An enclosure of a rational number, at most one unit in the last place wide.
 interval::Interval Enclose(const Rational& value);
