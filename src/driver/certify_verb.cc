@@ -57,8 +57,11 @@ int Run(const Options& options) {
       tally = solve::certify::Check(certificate, session.diagnostics, stop);
     stopped = stopped || tally.stopped;
     const std::string_view whole = session.sources.text(*file);
+    // The text of the question, and no command behind it.
     const bool other = !options.script.empty() && std::ranges::none_of(questions, [&](const std::string& q) {
-      return whole.starts_with(q);
+      return whole.starts_with(q) &&
+             std::ranges::all_of(certificate.script.commands,
+                                 [&](const auto& command) { return command.span.begin < q.size(); });
     });
     if (other) {
       session.diagnostics.Report(diag::Kind::kCertificateRejected, {*file, 0, 1},

@@ -137,6 +137,10 @@ Rational Rational::FromDouble(double value) {
   return Rational(std::move(impl));
 }
 
+size_t Rational::Digits() const {
+  return mpz_sizeinbase(impl_->value.get_num_mpz_t(), 10) + mpz_sizeinbase(impl_->value.get_den_mpz_t(), 10);
+}
+
 double Rational::ToDouble() const { return impl_->value.get_d(); }
 size_t Rational::Hash() const { return std::hash<std::string>()(impl_->value.get_str()); }
 std::string Rational::Numerator() const { return impl_->value.get_num().get_str(); }

@@ -38,6 +38,8 @@ class Rational {
   /// The exact value of a finite double.
   static Rational FromDouble(double value);
   double ToDouble() const;
+  /// How many decimal digits numerator and denominator have together, or one or two more.
+  size_t Digits() const;
   size_t Hash() const;
   /// Numerator and denominator in decimal; the sign is the numerator's.
   std::string Numerator() const;

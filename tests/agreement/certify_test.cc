@@ -157,9 +157,52 @@ TEST(Certify, IsNotFooled) {
   EXPECT_TRUE(
       bad("(assert (= (sin x) 1.0))(assert (<= 1.5 x 1.6))(fact (= (sin x) 1.0))(fact (<= 1.5 x))"
           "(fact (<= x 1.6))(search (x) \"0 1.5707963267948966 . .\")"));
+  // The root in a branch that is not taken says nothing of the root beside it.
+  EXPECT_TRUE(
+      bad("(declare-fun z () Real)(assert (= x (- 1.0)))(assert (= z 1.0))"
+          "(assert (<= (ite (<= z 0.0) (sqrt x) 1.0) 5.0))(fact (= x (- 1.0)))"
+          "(fact (<= (+ (ite (<= z 0.0) (sqrt x) 1.0)"
+          " (- (* (+ y 1.0) (sqrt x)) (* y (sqrt x)) (sqrt x))) 5.0))(search (x) \".\")"));
+  EXPECT_TRUE(
+      bad("(declare-fun z () Real)(assert (= x (- 1.0)))(assert (= z 1.0))"
+          "(assert (<= (ite (or (<= 0.0 z) (<= (sqrt x) 7.0)) 3.0 1.0) 5.0))(fact (= x (- 1.0)))"
+          "(fact (<= (+ (ite (or (<= 0.0 z) (<= (sqrt x) 7.0)) 3.0 1.0)"
+          " (- (* (+ y 1.0) (sqrt x)) (* y (sqrt x)) (sqrt x))) 5.0))(search (x) \".\")"));
+  // Names keep their meaning, and nothing is asserted behind a refutation.
+  EXPECT_TRUE(bad("(let x 5.0)(assert (< x 0.0))(contradiction)"));
+  EXPECT_TRUE(bad("(define-fun |1.0| () Real 0.0)(assert (< 0.6 1.0))(contradiction)"));
+  EXPECT_TRUE(bad("(define-fun true () Bool false)(assert true)(contradiction)"));
+  EXPECT_TRUE(bad("(define-fun <= ((a Real)(c Real)) Bool false)(assert (<= 1.0 2.0))(contradiction)"));
   // A square may vanish, and a difference of squares does not vanish summand by summand.
   EXPECT_TRUE(bad("(assert (<= (* x x) 0.0))(squares (<= (* x x) 0.0))(contradiction)"));
   EXPECT_TRUE(bad("(assert (<= (- (* x x) (* y y)) 0.0))(squares (<= (- (* x x) (* y y)) 0.0))"));
+}
+
+// What is too large is rejected, in little time and memory.
+TEST(Certify, EndsOnAnything) {
+  const auto said = [](const std::string& text) { return Rejected(kHead + text); };
+  EXPECT_EQ(said("(assert (< x 1.0))(search () \".\")"), "box 1 of the search is not empty");
+  EXPECT_EQ(said("(declare-fun p () Bool)(substitute b (ite b p p))"),
+            "only variables are substituted, by numbers");
+  EXPECT_EQ(said("(define-fun f ((a Real)) Real (f a))(assert (< (f 1.0) 0.0))"),
+            "too many uses of definitions");
+  const auto chain = [](const std::string& first, const std::string& next, int count) {
+    std::string text = "(let $p0 " + first + ")";
+    for (int i = 1; i <= count; ++i) {
+      std::string step = next;
+      for (size_t at = step.find('@'); at != std::string::npos; at = step.find('@'))
+        step.replace(at, 1, "$p" + std::to_string(i - 1));
+      text += "(let $p" + std::to_string(i) + " " + step + ")";
+    }
+    return text + "(fact (<= $p" + std::to_string(count) + " 0.0))";
+  };
+  EXPECT_EQ(said(chain("x", "(* @ @)", 40)), "a polynomial grows too large to be compared");
+  EXPECT_EQ(said(chain("3.0", "(* @ @)", 45)), "this number is too large");
+  EXPECT_EQ(said(chain("(sqrt x)", "(+ (sin @) (cos @))", 60)), "this does not follow from what is known");
+  EXPECT_EQ(said(chain("x", "(sin @)", 900)), "functions are nested too deeply");
+  std::string roots = "x";
+  for (int i = 0; i < 45; ++i) roots = "(sqrt " + roots + ")";
+  EXPECT_EQ(said("(assert (<= " + roots + " 3.0))(contradiction)"), "no contradiction is known here");
 }
 
 }  // namespace

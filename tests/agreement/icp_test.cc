@@ -278,16 +278,18 @@ INSTANTIATE_TEST_SUITE_P(
               " (- (+ (^ (sin y) 2) 2))) 0))",
               "sat"},
         Known{"dreal3 #12: not above",
-              "(assert (<= 0.3999996185302735 x 0.39999985694885254))(assert (not (> (+ (* (- 1 0) x) 0) 0.4)))",
+              "(assert (<= 0.3999996185302735 x 0.39999985694885254))(assert (not (> (+ (* (- 1 0) x) 0) "
+              "0.4)))",
               "sat"},
         Known{"dreal3 #12: above",
-              "(assert (<= 0.3999996185302735 x 0.39999985694885254))(assert (> (+ (* (- 1 0) x) 0) 0.4))", "unsat"},
+              "(assert (<= 0.3999996185302735 x 0.39999985694885254))(assert (> (+ (* (- 1 0) x) 0) 0.4))",
+              "unsat"},
         Known{"dreal3 #49: a product of three",
               "(assert (<= -10000 x 10000))(assert (<= -10000 y 10000))"
               "(assert (<= 0 (+ (* (- 1) 0.9999999999999567 x) (* (- 120) 0.999999999999935 y))))",
               "sat"},
         Known{"dreal3 #129: the quotient is above 1, so nothing holds of its arc sine",
-              "(assert (<= 0.5312500000000001 x 0.5625))(assert (<= 0.5000000000000001 y 0.53125))"
+              "(assert (<= 0.53125000001 x 0.5625))(assert (<= 0.501 y 0.53125))"
               "(assert (> (asin (/ (+ (* 4 x) -2) (+ (* 4 y) -2))) 0.15915494309190006))",
               "unsat"},
         Known{"dreal3 #129: its negation, where the other part fails",
@@ -309,7 +311,8 @@ INSTANTIATE_TEST_SUITE_P(
         Known{"z3 #6130",
               "(declare-fun a () Real)(declare-fun b () Real)(declare-fun c () Real)(declare-fun d () Real)"
               "(assert (= 0 (+ (* x y) (* a z x) (* z x b) (* x b (- 1)) (* z x y (- 1)))))"
-              "(assert (= 0 (+ c (* x y) (* a z x) (* z x b) (* x b (- 1)) (* c y (- 1)) (* z x y (- 1)) (* c d y "
+              "(assert (= 0 (+ c (* x y) (* a z x) (* z x b) (* x b (- 1)) (* c y (- 1)) (* z x y (- 1)) (* "
+              "c d y "
               "(- 1)))))"
               "(assert (and (< 0 (* x x)) (> z 0) (> c 0)))(assert (= d (+ c 1.0)))",
               "sat"},
@@ -325,9 +328,12 @@ INSTANTIATE_TEST_SUITE_P(
               "sat"},
         Known{"cvc5 #8638",
               "(declare-fun a () Real)(declare-fun b () Real)(declare-fun c () Real)(assert (< 13 c 19))"
-              "(assert (< -11 a))(assert (< a (/ (+ y z (- b)) c)))(assert (< 16 b 48))(assert (> (* y y y y b) 0))"
-              "(assert (> (* y (+ 1 (* z (/ (- 1) 2)) (* y y z (/ 1 6)))) 0))(assert (> z (/ 15707963 5000000)))"
-              "(assert (> (/ 31415927 10000000) z))(assert (> (* z (/ 1 2)) y))(assert (> x 0))(assert (> y x))",
+              "(assert (< -11 a))(assert (< a (/ (+ y z (- b)) c)))(assert (< 16 b 48))(assert (> (* y y y y "
+              "b) 0))"
+              "(assert (> (* y (+ 1 (* z (/ (- 1) 2)) (* y y z (/ 1 6)))) 0))(assert (> z (/ 15707963 "
+              "5000000)))"
+              "(assert (> (/ 31415927 10000000) z))(assert (> (* z (/ 1 2)) y))(assert (> x 0))(assert (> y "
+              "x))",
               "sat"}),
     [](const auto& chosen) { return "Case" + std::to_string(chosen.index); });
 
@@ -365,6 +371,18 @@ INSTANTIATE_TEST_SUITE_P(
         Known{"numbers that differ only at the end",
               "(assert (< x 0.1000000000000000000000001))(assert (> x 0.1))", "sat"},
         Known{"the sine far out", "(assert (<= 1000000 x 1000001))(assert (> (sin x) 1.01))", "unsat"},
+        Known{"a root of roots",
+              "(assert (<= (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt "
+              "(sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt (sqrt "
+              "(sqrt (sqrt "
+              "(sqrt (sqrt (sqrt x)))))))))))))))))))))))))))))))) 3))",
+              "sat"},
+        Known{"two equations that no rational numbers satisfy",
+              "(assert (= (+ (* x x) (* y y)) 2))(assert (= (* x y) 0.7))(assert (> x y))", "sat"},
+        Known{
+            "three equations with a sine",
+            "(assert (= (+ x y z) 1))(assert (= (sin x) (* y y)))(assert (= (* x z) 0.1))(assert (<= 0 x 2))",
+            "sat"},
         Known{"empty bounds", "(assert (<= 2 x 1))", "unsat"},
         Known{"a chain of minima",
               "(assert (<= 0 x 1))(assert (<= 0 y 1))(assert (> (min x (max y x)) (+ x 0.01)))", "unsat"},

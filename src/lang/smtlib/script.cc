@@ -110,6 +110,11 @@ class ScriptReader {
   }
 
   bool New(const SExpr& name) {
+    if (TermReader::IsReserved(name.text)) {
+      diagnostics_.Report(Kind::kSmtUndeclared, name.span,
+                          fmt::format("`{}` has a meaning already", name.text));
+      return false;
+    }
     if (names_.insert(name.text).second) return true;
     diagnostics_.Report(Kind::kSmtUndeclared, name.span, fmt::format("`{}` is declared twice", name.text));
     return false;

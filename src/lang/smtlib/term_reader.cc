@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "lang/suggest.h"
 
@@ -17,6 +18,9 @@ namespace {
 
 // Expansions of definitions, so that a few lines cannot ask for more terms than memory holds.
 constexpr size_t kMostExpansions = 1'000'000;
+// Definitions inside definitions, which may use themselves.
+constexpr size_t kDeepestExpansion = 200;
+constexpr size_t kMostDigits = 20'000;
 
 }  // namespace
 
@@ -48,6 +52,13 @@ std::optional<SortId> TermReader::ReadSort(const SExpr& e) {
   return std::nullopt;
 }
 
+bool TermReader::IsReserved(const std::string& name) {
+  static const std::set<std::string, std::less<>> kReserved{
+      "true",     "false", "and", "or", "not", "xor", "=>", "ite", "let", "=",
+      "distinct", "<",     "<=",  ">",  ">=",  "+",   "-",  "*",   "/",   "!"};
+  return kReserved.contains(name) || Rational::Parse(name).has_value();
+}
+
 void TermReader::Declare(const SExpr& name, TermId variable) { variables_[name.text] = variable; }
 void TermReader::Define(const SExpr& name, Macro macro) { macros_[name.text] = std::move(macro); }
 
@@ -70,6 +81,10 @@ expr::TermId TermReader::Read(const SExpr& e) {
 // Definitions can nest terms deeper than any list; what works on terms recursively must not.
 expr::TermId TermReader::Bounded(TermId t, const SExpr& e) {
   if (!t.valid()) return t;
+  if (arena_.IsNumber(t) && arena_.number(t).Digits() > kMostDigits) {
+    diagnostics_.Report(Kind::kSmtUnsupported, e.span, "this number is too large");
+    return {};
+  }
   const size_t known = depths_.size();
   depths_.resize(std::max(known, arena_.size()));
   for (size_t i = known; i < arena_.size(); ++i) {
@@ -128,7 +143,7 @@ expr::TermId TermReader::Expand(const SExpr& e, const Macro& macro, Args args) {
   if (const size_t wanted = macro.parameters.size(); args.size() != wanted)
     return Wrong(e, fmt::format("`{}` takes {} argument{}, not {}", e.IsList() ? e.items[0].text : e.text,
                                 wanted, wanted == 1 ? "" : "s", args.size()));
-  if (++expansions_ > kMostExpansions) {
+  if (++expansions_ > kMostExpansions || scopes_.size() > kDeepestExpansion) {
     diagnostics_.Report(Kind::kSmtUnsupported, e.span, "too many uses of definitions");
     return {};
   }

@@ -28,6 +28,8 @@ class TermReader {
   /// Integers become reals where reals are asked for.
   expr::TermId As(expr::TermId t, expr::SortId sort, const SExpr& e);
 
+  /// Numbers, constants and operators of the language: they cannot be declared.
+  static bool IsReserved(const std::string& name);
   void Declare(const SExpr& name, expr::TermId variable);
   void Define(const SExpr& name, Macro macro);
 

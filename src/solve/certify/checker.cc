@@ -18,6 +18,9 @@ constexpr int kSweeps = 3;       // for a box that is split
 constexpr int kLeafSweeps = 60;  // for a box that must turn out empty
 constexpr int kLeafParts = 64;  // into which it may be split to that end: enclosures differ from the search's
 
+constexpr size_t kDeepest = 1000;            // nested cases
+constexpr size_t kMostNumbers = 20'000'000;  // in boxes that wait
+
 struct Stopped {};
 
 /// The words of a tree.
@@ -86,6 +89,7 @@ class Checker {
       case Step::Kind::kCase: {
         Branch next{branch.facts, branch.required, std::nullopt, normal_.Of(step.terms[0])};
         next.facts.Add(next.assumed);
+        if (open_.size() == kDeepest) throw Rejection("cases are nested too deeply");
         open_.push_back(std::move(next));
         return;
       }
@@ -93,7 +97,8 @@ class Checker {
         if (!branch.open->empty()) throw Rejection("an alternative is missing");
         break;
       case Step::Kind::kSubstitute: {
-        if (arena_.op(step.terms[0]) != Op::kVariable) throw Rejection("only variables are substituted");
+        if (arena_.op(step.terms[0]) != Op::kVariable || arena_.sort_of(step.terms[1]) == arena_.Bool())
+          throw Rejection("only variables are substituted, by numbers");
         const AtomId variable = normal_.Variable(step.terms[0]);
         branch.facts.Substitute(variable, normal_.Number(step.terms[1]));
         return;
@@ -143,7 +148,7 @@ class Checker {
       const bool number = i % 2 == 0;
       if (arena_.sort_of(terms[i]) == arena_.Bool() || (number && !arena_.IsNumber(terms[i])))
         throw Rejection("numbers and terms should alternate here");
-      if (!number && !normal_.IsTotal(terms[i]))
+      if (!number && normal_.HasPartial(terms[i]))
         throw Rejection("a term of the identity is not defined everywhere");
     }
     Poly sum = Normal::ConstantPoly(arena_.number(terms.back()));
@@ -240,6 +245,8 @@ class Checker {
         upper[place].AtLeast(Enclosure(value->Floor() + Rational(1)));
         box[place].AtMost(Enclosure(value->Floor()));
       }
+      if (open.size() * (box.size() + 1) > kMostNumbers)
+        throw Rejection("the tree of the search is too deep");
       open.push_back(std::move(upper));
       open.push_back(std::move(box));
     }
@@ -261,6 +268,7 @@ class Checker {
       const auto splits = [&](size_t v) {
         return arena_.sort_of(propagator.variables()[v]) == arena_.Real() && part[v].IsBounded();
       };
+      if (part.empty()) return false;
       size_t v = next % part.size();
       for (size_t tried = 0; !splits(v); v = (v + 1) % part.size()) {
         if (++tried == part.size()) return false;

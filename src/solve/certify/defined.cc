@@ -29,65 +29,94 @@ std::optional<Normal::Key> Normal::KeyOf(Elementary function, PolyId argument) {
   return Key{function, Intern(std::move(p))};
 }
 
-void Normal::KeysOf(PolyId id, std::set<Key>& keys) {
+// What must be defined for the polynomial to have a value: partial functions, and choices, of which only the
+// taken branch counts.
+void Normal::KeysOf(PolyId id, std::set<Key>& keys, std::set<PolyId>& seen) {
+  if (!seen.insert(id).second) return;
   const Poly p = poly(id);
   for (const auto& [m, c] : p) {
     for (const AtomId a : m) {
       const Atom atom = atoms_[a.index()];
+      if (atom.kind == Atom::Kind::kChoice) {
+        keys.insert({Elementary::kCount_, AtomPoly(atom)});
+        continue;
+      }
       if (atom.kind == Atom::Kind::kFunction) {
         if (const auto key = KeyOf(atom.function, atom.args[0])) keys.insert(*key);
       }
-      if (atom.kind == Atom::Kind::kChoice) KeysOf(atom.condition, keys);
-      for (const PolyId arg : atom.args) KeysOf(arg, keys);
+      for (const PolyId arg : atom.args) KeysOf(arg, keys, seen);
     }
   }
 }
 
-void Normal::KeysOf(FormulaId id, std::set<Key>& keys) {
-  const Formula f = formula(id);
-  if (f.kind == Formula::Kind::kLiteral) KeysOf(f.poly, keys);
-  for (const FormulaId part : f.parts) KeysOf(part, keys);
-}
-
-std::set<Normal::Key> Normal::Written(TermId term) {
-  std::set<Key> written;
+bool Normal::HasPartial(TermId term) {
   std::unordered_set<TermId> seen;
+  bool found = false;
   expr::VisitPostorder(arena_, term, seen, [&](TermId t) {
-    if (arena_.op(t) != Op::kElementary || !IsPartial(arena_.elementary_of(t))) return;
-    // A value that is known exactly is defined.
-    if (ConstantOf(poly(Number(t)))) return;
-    if (const auto key = KeyOf(arena_.elementary_of(t), Number(arena_.arg(t, 0)))) written.insert(*key);
+    found = found || (arena_.op(t) == Op::kElementary && IsPartial(arena_.elementary_of(t)));
   });
-  return written;
+  return found;
 }
 
-bool Normal::IsTotal(TermId term) { return Written(term).empty(); }
+// The same of a term as it is written; false if a branch or condition of a choice says more than its normal
+// form.
+bool Normal::Written(TermId term, std::set<Key>& keys, std::unordered_set<TermId>& seen) {
+  if (!seen.insert(term).second) return true;
+  const Op op = arena_.op(term);
+  if (op == Op::kIte) {
+    if (!HasPartial(term)) return true;
+    keys.insert({Elementary::kCount_, Number(term)});
+    return Faithful(arena_.arg(term, 0)) && FaithfulNumber(arena_.arg(term, 1)) &&
+           FaithfulNumber(arena_.arg(term, 2));
+  }
+  // A value that is known exactly is defined.
+  if (op == Op::kElementary && IsPartial(arena_.elementary_of(term)) && !ConstantOf(poly(Number(term)))) {
+    if (const auto key = KeyOf(arena_.elementary_of(term), Number(arena_.arg(term, 0)))) keys.insert(*key);
+  }
+  return std::ranges::all_of(arena_.args(term), [&](TermId a) { return Written(a, keys, seen); });
+}
 
-bool Normal::FaithfulLiteral(TermId literal) {
-  const std::set<Key> written = Written(literal);
-  if (written.empty()) return true;
-  std::set<Key> kept;
-  KeysOf(Of(literal), kept);
+bool Normal::Keeps(const std::vector<TermId>& terms, PolyId normal) {
+  std::set<Key> written, kept;
+  std::unordered_set<TermId> seen;
+  for (const TermId t : terms) {
+    if (!Written(t, written, seen)) return false;
+  }
+  std::set<PolyId> visited;
+  if (normal.valid()) KeysOf(normal, kept, visited);
   return std::includes(kept.begin(), kept.end(), written.begin(), written.end());
 }
 
+bool Normal::FaithfulNumber(TermId term) { return Keeps({term}, Number(term)); }
+
+bool Normal::FaithfulLiteral(TermId literal) {
+  return Keeps({arena_.arg(literal, 0), arena_.arg(literal, 1)}, formula(Of(literal)).poly);
+}
+
 bool Normal::Faithful(TermId t) {
+  if (const auto it = faithful_.find(t); it != faithful_.end()) return it->second;
+  bool result = true;
   switch (arena_.op(t)) {
     case Op::kNot:
     case Op::kAnd:
     case Op::kOr:
     case Op::kIte:
-      return std::ranges::all_of(arena_.args(t), [this](TermId a) { return Faithful(a); });
+      result = std::ranges::all_of(arena_.args(t), [this](TermId a) { return Faithful(a); });
+      break;
     case Op::kEq:
-      if (arena_.sort_of(arena_.arg(t, 0)) == arena_.Bool())
-        return Faithful(arena_.arg(t, 0)) && Faithful(arena_.arg(t, 1));
-      return FaithfulLiteral(t);
+      result = arena_.sort_of(arena_.arg(t, 0)) == arena_.Bool()
+                   ? Faithful(arena_.arg(t, 0)) && Faithful(arena_.arg(t, 1))
+                   : FaithfulLiteral(t);
+      break;
     case Op::kLe:
     case Op::kLt:
-      return FaithfulLiteral(t);
+      result = FaithfulLiteral(t);
+      break;
     default:
-      return true;  // constants and variables
+      break;  // constants and variables
   }
+  faithful_.emplace(t, result);
+  return result;
 }
 
 }  // namespace rondo::solve::certify

@@ -58,7 +58,7 @@ class Enclosure {
   friend Enclosure Sin(const Enclosure& a);
   friend Enclosure Cos(const Enclosure& a);
   friend Enclosure Tan(const Enclosure& a);
-  /// All angles, the line if they are not told apart.
+  /// All angles, if they are not told apart; atan2(0, 0) is some angle.
   friend Enclosure Atan2(const Enclosure& y, const Enclosure& x);
   /// The part of `x` where sin x can lie in `z`: ends are moved over at most a few periods.
   friend Enclosure WhereSin(const Enclosure& z, const Enclosure& x);

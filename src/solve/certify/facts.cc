@@ -6,6 +6,12 @@ namespace rondo::solve::certify {
 
 using expr::Elementary;
 
+namespace {
+
+constexpr size_t kMostDigits = 1'000;
+
+}  // namespace
+
 bool Facts::Range::Add(uint8_t relation, const Rational& bound) {
   bool changed = false;
   if (relation == (kBelow | kAbove)) {
@@ -114,6 +120,7 @@ void Facts::Follow(PolyId poly) {
     return;
   }
   const auto bound = [&](const Rational& c, bool strict, uint8_t side) {
+    if (c.Digits() > kMostDigits) return;  // squares of squares of squares
     AddComparison(argument, static_cast<uint8_t>(side | (strict ? 0 : kEven)), c * c);
   };
   if (known.hi) bound(*known.hi, known.hi_strict, kBelow);

@@ -12,6 +12,13 @@ using expr::Op;
 using expr::Rational;
 using expr::TermId;
 
+namespace {
+
+constexpr int kMostFactors = 10'000;
+constexpr uint64_t kLargestForm = 1'000'000;
+
+}  // namespace
+
 uint32_t Propagator::Push(const Node& node) {
   if (const auto it = interned_.find(node); it != interned_.end()) return it->second;
   const auto id = static_cast<uint32_t>(nodes_.size());
@@ -121,7 +128,8 @@ uint32_t Propagator::Product(TermId t) {
   Rational coefficient(1);
   std::map<TermId, uint32_t> powers;
   std::vector<TermId> todo{t};
-  while (!todo.empty()) {
+  for (int steps = 0; !todo.empty(); ++steps) {
+    if (steps > kMostFactors) throw Rejection("a product has too many factors");
     const TermId factor = todo.back();
     todo.pop_back();
     if (arena_.op(factor) == Op::kMul) {
@@ -147,11 +155,10 @@ uint32_t Propagator::Compare(uint32_t node, const Rational& bound, uint8_t relat
   auto it = comparison_ids_.find(key);
   if (it == comparison_ids_.end()) {
     const Enclosure enclosure(bound);
-    const bool exact = !enclosure.MayBeBelow(enclosure);
-    comparisons_.push_back({node, enclosure, exact, 0});
+    comparisons_.push_back({node, enclosure, 0});
     it = comparison_ids_.emplace(key, static_cast<uint32_t>(comparisons_.size() - 1)).first;
   }
-  forms_.push_back({Form::Kind::kLiteral, it->second, relation, {}});
+  forms_.push_back({Form::Kind::kLiteral, it->second, relation, {}, 1});
   return static_cast<uint32_t>(forms_.size() - 1);
 }
 
@@ -171,7 +178,10 @@ uint32_t Propagator::Formula(TermId t, bool positive) {
 
 uint32_t Propagator::NewFormula(TermId t, bool positive) {
   const auto junction = [&](bool conjunction, std::vector<uint32_t> parts) {
-    forms_.push_back({conjunction ? Form::Kind::kAnd : Form::Kind::kOr, 0, 0, std::move(parts)});
+    uint64_t size = 1;
+    for (const uint32_t p : parts) size += forms_[p].size;
+    if (size > kLargestForm) throw Rejection("a formula grows too large");
+    forms_.push_back({conjunction ? Form::Kind::kAnd : Form::Kind::kOr, 0, 0, std::move(parts), size});
     return static_cast<uint32_t>(forms_.size() - 1);
   };
   const std::vector<TermId> args(arena_.args(t).begin(), arena_.args(t).end());

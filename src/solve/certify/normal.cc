@@ -15,6 +15,9 @@ using expr::Op;
 namespace {
 
 constexpr size_t kMostMonomials = 20'000;
+constexpr size_t kLongestMonomial = 1'000;
+constexpr uint32_t kDeepestAtom = 500;
+constexpr uint64_t kLargestFormula = 1'000'000;
 
 Monomial Merge(const Monomial& a, const Monomial& b) {
   Monomial result;
@@ -28,8 +31,9 @@ void AddTo(Poly& p, Monomial m, const Rational& c) {
   if (c.IsZero()) return;
   const auto [it, fresh] = p.emplace(std::move(m), c);
   if (!fresh) it->second = it->second + c;
+  const bool large = p.size() > kMostMonomials || it->first.size() > kLongestMonomial;
   if (it->second.IsZero()) p.erase(it);
-  if (p.size() > kMostMonomials) throw Rejection("a polynomial grows too large to be compared");
+  if (large) throw Rejection("a polynomial grows too large to be compared");
 }
 
 uint8_t Mirrored(uint8_t r) {
@@ -70,7 +74,11 @@ PolyId Normal::Intern(Poly poly) {
 
 FormulaId Normal::Intern(Formula formula) {
   if (const auto it = formula_ids_.find(formula); it != formula_ids_.end()) return it->second;
+  uint64_t size = 1;
+  for (const FormulaId part : formula.parts) size += sizes_[part.index()];
+  if (size > kLargestFormula) throw Rejection("a formula grows too large");
   const FormulaId id(formulas_.size());
+  sizes_.push_back(size);
   formulas_.push_back(formula);
   formula_ids_.emplace(std::move(formula), id);
   return id;
@@ -79,6 +87,14 @@ FormulaId Normal::Intern(Formula formula) {
 PolyId Normal::AtomPoly(Atom atom) {
   auto it = atom_ids_.find(atom);
   if (it == atom_ids_.end()) {
+    uint32_t depth = 0;
+    for (const PolyId arg : atom.args) {
+      for (const auto& [m, c] : poly(arg)) {
+        for (const AtomId a : m) depth = std::max(depth, depths_[a.index()] + 1);
+      }
+    }
+    if (depth > kDeepestAtom) throw Rejection("functions are nested too deeply");
+    depths_.push_back(depth);
     atoms_.push_back(atom);
     it = atom_ids_.emplace(std::move(atom), AtomId(atoms_.size() - 1)).first;
   }
@@ -194,6 +210,8 @@ PolyId Normal::Number(TermId t) {
 PolyId Normal::NewNumber(TermId t) {
   std::vector<PolyId> args;
   const Op op = arena_.op(t);
+  if (arena_.sort_of(t) == arena_.Bool() && op != Op::kVariable)
+    throw Rejection("a number should stand here");
   for (const TermId a : arena_.args(t)) {
     if (arena_.sort_of(a) != arena_.Bool()) args.push_back(Number(a));
   }

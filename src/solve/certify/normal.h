@@ -80,8 +80,8 @@ class Normal {
   /// Do all partial functions of each literal, as written, occur in its normal form? Else the normal form
   /// says less than what is written.
   bool Faithful(TermId formula);
-  /// Does no function occur in it that is not defined everywhere?
-  bool IsTotal(TermId term);
+  /// Does a function occur in it that is not defined everywhere?
+  bool HasPartial(TermId term);
 
   /// `difference relation 0`.
   FormulaId Literal(const Poly& difference, uint8_t relation);
@@ -116,7 +116,8 @@ class Normal {
   };
 
  private:
-  using Key = std::pair<expr::Elementary, PolyId>;  // what must be defined: a function and its argument
+  // What must be defined: a function and its argument, or a choice (kCount_).
+  using Key = std::pair<expr::Elementary, PolyId>;
 
   PolyId NewNumber(TermId term);
   FormulaId NewFormula(TermId formula, bool positive);
@@ -131,10 +132,11 @@ class Normal {
   PolyId Intern(Poly poly);
   FormulaId Intern(Formula formula);
   std::optional<Key> KeyOf(expr::Elementary function, PolyId argument);
-  void KeysOf(FormulaId formula, std::set<Key>& keys);
-  void KeysOf(PolyId poly, std::set<Key>& keys);
+  void KeysOf(PolyId poly, std::set<Key>& keys, std::set<PolyId>& seen);
+  bool Written(TermId term, std::set<Key>& keys, std::unordered_set<TermId>& seen);
+  bool Keeps(const std::vector<TermId>& terms, PolyId normal);
+  bool FaithfulNumber(TermId term);
   bool FaithfulLiteral(TermId literal);
-  std::set<Key> Written(TermId term);
 
   const expr::Arena& arena_;
   std::vector<Poly> polys_;
@@ -145,6 +147,9 @@ class Normal {
   std::map<Formula, FormulaId> formula_ids_;
   std::map<TermId, PolyId> numbers_;
   std::map<std::pair<TermId, bool>, FormulaId> forms_;
+  std::map<TermId, bool> faithful_;
+  std::vector<uint32_t> depths_;  // of atoms
+  std::vector<uint64_t> sizes_;   // of formulas, as trees
 };
 
 }  // namespace rondo::solve::certify

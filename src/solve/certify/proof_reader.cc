@@ -22,6 +22,8 @@ class ProofReader {
     if (head == "let") {
       if (e.items.size() != 3 || e.items[1].kind != SExpr::Kind::kSymbol)
         return Malformed(e, "(let name term)");
+      // Names of variables and of what the language knows keep their meaning.
+      if (!e.items[1].text.starts_with("$p")) return Malformed(e, "(let $pNUMBER term)");
       const expr::TermId t = terms.Read(e.items[2]);
       if (t.valid()) terms.Declare(e.items[1], t);
     } else if (head == "substitute") {
@@ -85,6 +87,11 @@ void ReadCertificate(const diag::SourceSet& sources, diag::FileId file, Certific
   ProofReader reader(certificate, diagnostics);
   lang::smtlib::ReadScript(sources, file, certificate.script, diagnostics,
                            [&](const SExpr& e, TermReader& terms) { return reader.Read(e, terms); });
+  if (certificate.steps.empty()) return;
+  for (const auto& command : certificate.script.commands) {
+    if (command.span.begin > certificate.steps.front().span.begin)
+      diagnostics.Report(Kind::kSmtSyntax, command.span, "the script ends where its refutation begins");
+  }
 }
 
 }  // namespace rondo::solve::certify

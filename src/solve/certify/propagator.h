@@ -53,7 +53,6 @@ class Propagator {
   struct Comparison {
     uint32_t node;
     Enclosure bound;
-    bool exact;
     uint8_t possible;
   };
   // A formula: a comparison and its relation, or a conjunction or disjunction of others.
@@ -62,6 +61,7 @@ class Propagator {
     uint32_t comparison = 0;
     uint8_t relation = 0;
     std::vector<uint32_t> parts;
+    uint64_t size;  // as a tree
   };
 
   uint32_t Number(expr::TermId term);

@@ -29,6 +29,8 @@ class Contractor {
   /// After Contract: how much each variable can change what is undecided; see InfluenceMeter.
   void Influence(std::vector<double>& scores);
 
+  /// Enclosures of the nodes.
+  const std::vector<interval::Batch>& values() const { return values_; }
   interval::Interval ValueOf(uint32_t node, int lane) const {
     return {-values_[node].nl[lane], values_[node].hi[lane]};
   }

@@ -10,6 +10,8 @@ namespace {
 constexpr int kSteps = 40;
 /// Comparisons should hold by this much, so that they still do after rounding.
 constexpr double kMargin = 1e-7;
+constexpr double kNear = 1e-9;
+constexpr int kPolish = 3;
 /// Where nothing bounds a variable, it begins here.
 constexpr double kFar = 100;
 constexpr double kDamping = 1e-9;
@@ -31,6 +33,7 @@ std::optional<std::vector<double>> Descent::Try() {
     point_[v] = lo + (hi - lo) * share;
   }
   std::vector<Violation> violations;
+  int polished = 0;
   for (int step = 0; step < kSteps; ++step) {
     for (size_t v = 0; v < point_.size(); ++v) {
       if (tape_.variables[v].integral) point_[v] = std::round(point_[v]);
@@ -39,8 +42,12 @@ std::optional<std::vector<double>> Descent::Try() {
     violations.clear();
     const double total = Collect(tape_.root, violations);
     if (std::isnan(total)) return std::nullopt;
-    if (violations.empty()) return point_;
-    if (!Step(violations)) return std::nullopt;
+    const bool near = std::ranges::all_of(
+        violations, [](const Violation& v) { return v.equation && std::fabs(v.by) < kNear; });
+    // Equations are mended a few times more, as far as rounding allows.
+    polished = near ? polished + 1 : 0;
+    if (violations.empty() || polished > kPolish) return point_;
+    if (!Step(violations)) return near ? std::optional(point_) : std::nullopt;
   }
   return std::nullopt;
 }
@@ -146,7 +153,7 @@ double Descent::Collect(uint32_t formula, std::vector<Violation>& out) const {
   } else if (value == bound) {
     by = margin;
   }
-  if (by != 0) out.push_back({node, by});
+  if (by != 0) out.push_back({node, by, n.n == kEqual});
   return std::fabs(by);
 }
 

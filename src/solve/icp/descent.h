@@ -24,6 +24,7 @@ class Descent {
   struct Violation {
     uint32_t node;
     double by;
+    bool equation;
   };
 
   void Evaluate();

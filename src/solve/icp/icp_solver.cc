@@ -4,11 +4,9 @@
 
 #include <algorithm>
 
-#include "expr/substitute.h"
-#include "solve/icp/contractor.h"
-#include "solve/icp/point.h"
 #include "solve/icp/proof.h"
 #include "solve/icp/search.h"
+#include "solve/icp/verify.h"
 
 namespace rondo::solve::icp {
 namespace {
@@ -37,8 +35,7 @@ class Decision {
 
   Status Run() { return Decide(lowered_.conjuncts, {}); }
 
-  const Assignment& model() const { return model_; }
-  bool exact() const { return exact_; }
+  const Solution& solution() const { return solution_; }
   const FlatBox& box() const { return box_; }
   const std::vector<TermId>& box_variables() const { return box_variables_; }
 
@@ -59,8 +56,12 @@ class Decision {
     statistics_.nodes = std::max(statistics_.nodes, tape.nodes.size());
     statistics_.variables = std::max(statistics_.variables, tape.variables.size());
     ++statistics_.cases;
-    search_.verify_box = [&](const FlatBox& box) { return VerifyBox(prepared, tape, box); };
-    search_.verify = [&](const std::vector<double>& point) { return Verify(prepared, tape, point); };
+    Verifier verifier(lowered_, prepared, tape, *search_.kernels);
+    search_.verify = [&](const std::vector<double>& point) {
+      auto solution = verifier.Verify(point);
+      if (solution) solution_ = std::move(*solution);
+      return solution.has_value();
+    };
     const bool split = !prepared.disjunctions.empty();
     search_.max_boxes = split ? kBoxesBeforeCases : options_.max_boxes;
     SearchResult result = Search(tape, search_);
@@ -70,7 +71,6 @@ class Decision {
         if (proof_ != nullptr) WriteSearch(rotated, tape, result.tree);
         return Status::kUnsat;
       case SearchResult::Kind::kPoint:
-      case SearchResult::Kind::kBox:
         return Status::kSat;
       case SearchResult::Kind::kUndecided:
       case SearchResult::Kind::kGaveUp:
@@ -129,127 +129,6 @@ class Decision {
     return status;
   }
 
-  // A number that satisfies the bounds of a variable, `value` if that does.
-  static Rational Within(const Range& range, const Rational& value) {
-    const bool below = range.lo && (value < *range.lo || (range.lo_strict && value == *range.lo));
-    const bool above = range.hi && (value > *range.hi || (range.hi_strict && value == *range.hi));
-    if (!below && !above) return value;
-    if (range.lo && range.hi && (range.lo_strict || range.hi_strict))
-      return (*range.lo + *range.hi) / Rational(2);
-    if (below) return range.lo_strict ? *range.lo + Rational(1) : *range.lo;
-    return range.hi_strict ? *range.hi - Rational(1) : *range.hi;
-  }
-
-  Assignment AssignmentOf(const Prepared& prepared, const Tape& tape, const std::vector<double>& point) {
-    Assignment assignment;
-    for (const auto& [term, variable] : lowered_.variables) assignment.emplace(term, Rational(0));
-    for (size_t v = 0; v < point.size(); ++v)
-      assignment[tape.variables[v].term] = Rational::FromDouble(point[v]);
-    for (const auto& [term, range] : prepared.ranges) {
-      if (lowered_.variables.contains(term)) assignment[term] = Within(range, assignment[term]);
-    }
-    return assignment;
-  }
-
-  // Adds the values of eliminated variables. Are all exact? nullopt if one has no value: its equation does
-  // not hold.
-  std::optional<bool> Complete(const Prepared& prepared, PointChecker& checker, Assignment& assignment) {
-    bool exact = true;
-    for (const auto& [variable, definition] : prepared.definitions) {
-      const interval::Interval near = checker.Enclosure(definition);
-      if (near.IsEmpty()) return std::nullopt;
-      const auto value = checker.Exact(definition);
-      exact = exact && value.has_value();
-      assignment[variable] = value ? *value : Rational::FromDouble(near.Middle());
-    }
-    return exact;
-  }
-
-  bool Verify(const Prepared& prepared, const Tape& tape, const std::vector<double>& point) {
-    const Assignment assignment = AssignmentOf(prepared, tape, point);
-    PointChecker checker(arena_, assignment);
-    Assignment full = assignment;
-    const std::optional<bool> exact = Complete(prepared, checker, full);
-    if (!exact) return false;
-    // The query itself, if all values are rational; else what was derived from it.
-    bool good = true;
-    if (*exact) {
-      PointChecker original(arena_, full);
-      for (const TermId c : lowered_.conjuncts) good = good && original.Check(c) == Truth::kTrue;
-    } else {
-      for (const TermId c : Conjuncts(arena_, prepared)) good = good && checker.Check(c) == Truth::kTrue;
-    }
-    if (!good) return false;
-    model_ = std::move(full);
-    exact_ = *exact;
-    return true;
-  }
-
-  // One equation f = c, all else being inequalities that hold around the box: if f - c changes its sign
-  // between two points, it vanishes between them (f is continuous where it is defined).
-  bool VerifyBox(const Prepared& prepared, const Tape& tape, const FlatBox& box) {
-    std::vector<double> middle(tape.variables.size());
-    for (size_t v = 0; v < middle.size(); ++v)
-      middle[v] = interval::Interval{box[2 * v], box[2 * v + 1]}.Middle();
-    if (Verify(prepared, tape, middle)) return true;
-    std::optional<std::pair<TermId, Rational>> equation;
-    std::vector<TermId> others = prepared.disjunctions;
-    for (const auto& [term, range] : prepared.ranges) {
-      for (const Literal& literal : range.Literals(term)) {
-        if (literal.relation != kEqual) {
-          others.push_back(ToFormula(arena_, literal));
-        } else if (equation) {
-          return false;
-        } else {
-          equation = {term, literal.bound};
-        }
-      }
-    }
-    if (!equation || HasJumps(equation->first)) return false;
-    const interval::Interval target = Enclose(equation->second);
-    for (size_t v = 0; v < middle.size(); ++v) {
-      if (tape.variables[v].integral) continue;
-      for (const double step : {1e-8, 1e-6, 1e-4}) {
-        const interval::Interval segment{middle[v] - step, middle[v] + step};
-        const auto value_at = [&](double x) {
-          std::vector<double> point = middle;
-          point[v] = x;
-          const Assignment assignment = AssignmentOf(prepared, tape, point);
-          PointChecker checker(arena_, assignment);
-          checker.Widen(tape.variables[v].term, interval::Interval::Point(x));
-          return checker.Enclosure(equation->first);
-        };
-        const interval::Interval a = value_at(segment.lo);
-        const interval::Interval b = value_at(segment.hi);
-        if (a.IsEmpty() || b.IsEmpty()) continue;
-        if (!(a.hi < target.lo && b.lo > target.hi) && !(a.lo > target.hi && b.hi < target.lo)) continue;
-        Assignment assignment = AssignmentOf(prepared, tape, middle);
-        PointChecker around(arena_, assignment);
-        around.Widen(tape.variables[v].term, segment);
-        bool good = !around.Enclosure(equation->first).IsEmpty();
-        for (const TermId c : others) good = good && around.Check(c) == Truth::kTrue;
-        if (!good) continue;
-        if (!Complete(prepared, around, assignment)) continue;
-        model_ = std::move(assignment);
-        exact_ = false;
-        return true;
-      }
-    }
-    return false;
-  }
-
-  // Does something occur that is not continuous where it is defined?
-  bool HasJumps(TermId term) {
-    std::unordered_set<TermId> seen;
-    bool jumps = false;
-    expr::VisitPostorder(arena_, term, seen, [&](TermId t) {
-      jumps = jumps || arena_.op(t) == Op::kIte || arena_.op(t) == Op::kDivide ||
-              (arena_.op(t) == Op::kElementary && (arena_.elementary_of(t) == expr::Elementary::kAtan2 ||
-                                                   arena_.elementary_of(t) == expr::Elementary::kTan));
-    });
-    return jumps;
-  }
-
   static constexpr uint64_t kBoxesBeforeCases = 256;
   Lowered& lowered_;
   expr::Arena& arena_;
@@ -258,8 +137,7 @@ class Decision {
   Statistics& statistics_;
   Proof* proof_;
   SearchOptions search_;
-  Assignment model_;
-  bool exact_ = true;
+  Solution solution_;
   FlatBox box_;
   std::vector<TermId> box_variables_;
 };
@@ -309,8 +187,8 @@ Answer IcpSolver::Check(const Query& query, const Budget& budget, const base::St
     }
     case Decision::Status::kSat: {
       Sat sat;
-      sat.exact = decision.exact();
-      for (const auto& [term, number] : decision.model()) {
+      sat.exact = decision.solution().exact;
+      for (const auto& [term, number] : decision.solution().values) {
         const Variable& variable = lowered.variables.at(term);
         sat.values.emplace(variable.source, ToValue(query, variable, number));
       }

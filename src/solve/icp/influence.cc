@@ -89,6 +89,34 @@ void InfluenceMeter::Measure(const std::vector<Batch>& values, const std::vector
   }
 }
 
+bool InfluenceMeter::Gradient(uint32_t node, const std::vector<Batch>& values,
+                              std::vector<interval::Interval>& gradient) {
+  const auto cone = std::ranges::find_if(cones_, [&](const Cone& c) { return c.root == node; });
+  if (cone == cones_.end()) return false;
+  for (const uint32_t i : cone->nodes) {
+    switch (tape_.nodes[i].op) {
+      case NodeOp::kMin:
+      case NodeOp::kMax:
+      case NodeOp::kAbs:
+      case NodeOp::kChoose:
+      case NodeOp::kAtan2:
+      case NodeOp::kAsin:
+      case NodeOp::kAcos:
+      case NodeOp::kTan:
+        return false;
+      default:
+        break;
+    }
+  }
+  Derive(*cone, values);
+  gradient.assign(tape_.variables.size(), interval::Interval::Point(0));
+  for (const uint32_t v : cone->variables) {
+    const Batch& b = adjoints_[tape_.variables[v].node];
+    gradient[v] = {-b.nl[0], b.hi[0]};
+  }
+  return true;
+}
+
 void InfluenceMeter::Derive(const Cone& cone, const std::vector<Batch>& values) {
   const Batch zero = Constant(0);
   for (const uint32_t i : cone.nodes) adjoints_[i] = zero;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "interval/batch.h"
+#include "interval/interval.h"
 #include "solve/icp/tape.h"
 
 namespace rondo::solve::icp {
@@ -22,6 +23,11 @@ class InfluenceMeter {
   /// kLanes numbers for each variable. Cost: one reverse sweep for each open threshold.
   void Measure(const std::vector<interval::Batch>& values, const std::vector<Lanes>& open,
                std::vector<double>& scores);
+
+  /// Encloses the derivatives of a compared number by each variable, over the box in lane 0. False where it
+  /// may not be differentiable.
+  bool Gradient(uint32_t node, const std::vector<interval::Batch>& values,
+                std::vector<interval::Interval>& gradient);
 
  private:
   // A number that is compared, and what it depends on, latest node first.

@@ -113,7 +113,7 @@ PointChecker::Value PointChecker::NewNumber(TermId t) {
     case Op::kNumber:
       return exactly(arena_.number(t));
     case Op::kVariable: {
-      if (t == widened_.first) return {std::nullopt, widened_.second, true};
+      if (const auto it = widened_.find(t); it != widened_.end()) return {std::nullopt, it->second, true};
       const auto it = point_.find(t);
       if (it == point_.end()) return {std::nullopt, {}, false};
       return exactly(it->second);

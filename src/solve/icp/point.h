@@ -19,7 +19,7 @@ class PointChecker {
  public:
   PointChecker(const expr::Arena& arena, const Assignment& point) : arena_(arena), point_(point) {}
   /// The variable may have any value in `range`: what is called true is true for all of them.
-  void Widen(expr::TermId variable, interval::Interval range) { widened_ = {variable, range}; }
+  void Widen(expr::TermId variable, interval::Interval range) { widened_[variable] = range; }
   Truth Check(expr::TermId formula);
   /// The value of a term, if it is known exactly.
   std::optional<expr::Rational> Exact(expr::TermId term);
@@ -38,7 +38,7 @@ class PointChecker {
 
   const expr::Arena& arena_;
   const Assignment& point_;
-  std::pair<expr::TermId, interval::Interval> widened_;
+  std::unordered_map<expr::TermId, interval::Interval> widened_;
   std::unordered_map<expr::TermId, Value> values_;
 };
 

@@ -51,6 +51,8 @@ std::vector<Literal> Range::Literals(TermId term) const {
 
 namespace {
 
+constexpr size_t kMostDigits = 1'000;
+
 class Preparation {
  public:
   Preparation(Arena& arena, const std::unordered_map<TermId, Variable>& variables, Prepared& out,
@@ -161,9 +163,9 @@ class Preparation {
   // sqrt(e) <= c: a bound of e, wherever the root is defined.
   bool TakeRoot(const Literal& literal) {
     const TermId e = arena_.arg(literal.term, 0);
-    const Rational square = literal.bound * literal.bound;
     const bool negative = literal.bound < Zero();
-    if (literal.relation == (kLess | kGreater)) return false;
+    // Squares of squares of squares would exhaust memory.
+    if (literal.relation == (kLess | kGreater) || literal.bound.Digits() > kMostDigits) return false;
     if (negative || (literal.bound.IsZero() && literal.relation == kLess)) {
       if ((literal.relation & kGreater) == 0) {
         out_.contradiction = true;
@@ -172,7 +174,7 @@ class Preparation {
       }
       return true;
     }
-    TakeComparison(e, literal.relation, square);
+    TakeComparison(e, literal.relation, literal.bound * literal.bound);
     // What lies above a number that is not negative is not negative itself.
     if ((literal.relation & kLess) != 0) todo_.push_back(arena_.Le(Number(Zero()), e));
     return true;

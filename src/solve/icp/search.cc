@@ -55,13 +55,12 @@ class Shared {
     return true;
   }
 
-  void Finish(Kind kind, std::vector<double> point, FlatBox box) {
+  // A solution beats anything that was not decided.
+  void Finish(std::vector<double> point) {
     const std::scoped_lock lock(mutex_);
-    // A solution beats anything that was not decided.
-    if (result_.kind == Kind::kPoint || result_.kind == Kind::kBox) return;
-    result_.kind = kind;
+    if (result_.kind == Kind::kPoint) return;
+    result_.kind = Kind::kPoint;
     result_.point = std::move(point);
-    result_.box = std::move(box);
     done = true;
     wake_.notify_all();
   }
@@ -70,10 +69,6 @@ class Shared {
   bool Verify(const std::vector<double>& point) {
     const std::scoped_lock lock(verify_mutex_);
     return !done && options.verify(point) && (done = true);
-  }
-  bool VerifyBox(const FlatBox& box) {
-    const std::scoped_lock lock(verify_mutex_);
-    return !done && options.verify_box && options.verify_box(box) && (done = true);
   }
 
   void GiveUp() {
@@ -102,7 +97,7 @@ class Shared {
   }
 
   SearchResult Result() {
-    if (result_.kind != Kind::kPoint && result_.kind != Kind::kBox) {
+    if (result_.kind != Kind::kPoint) {
       result_.kind = undecided_ > 0 ? Kind::kUndecided : gave_up_ ? Kind::kGaveUp : Kind::kEmpty;
     }
     if (result_.kind != Kind::kEmpty) result_.tree.clear();
@@ -228,7 +223,7 @@ class Worker {
       std::vector<double> candidate(count_);
       for (size_t v = 0; v < count_; ++v) candidate[v] = point[2 * v];
       if (!shared_.Verify(candidate)) continue;
-      shared_.Finish(Kind::kPoint, std::move(candidate), {});
+      shared_.Finish(std::move(candidate));
       return true;
     }
     return false;
@@ -270,8 +265,11 @@ class Worker {
     }
     if (best == count_) {
       if (StillEmpties()) return;
-      if (shared_.VerifyBox(box_)) {
-        shared_.Finish(Kind::kBox, {}, box_);
+      std::vector<double> middle(count_);
+      for (size_t v = 0; v < count_; ++v)
+        middle[v] = interval::Interval{box_[2 * v], box_[2 * v + 1]}.Middle();
+      if (shared_.Verify(middle)) {
+        shared_.Finish(std::move(middle));
       } else {
         shared_.Undecided(box_);
       }
@@ -329,7 +327,7 @@ SearchResult Search(const Tape& tape, const SearchOptions& options) {
   for (int i = 0; i < kDescents && !options.stop.StopRequested(); ++i) {
     auto point = descent.Try();
     if (!point || !shared.Verify(*point)) continue;
-    shared.Finish(Kind::kPoint, std::move(*point), {});
+    shared.Finish(std::move(*point));
     return shared.Result();
   }
   const unsigned threads = std::max(1u, options.jobs);

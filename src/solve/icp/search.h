@@ -31,17 +31,15 @@ struct SearchOptions {
   base::StopToken stop;
   const interval::Kernels* kernels = nullptr;
   /// Asked, by one thread at a time, about points (one number for each variable) at which the formula looks
-  /// true. True: it certainly is.
+  /// true, and about the middles of boxes that are not split further. True: it certainly is there or nearby.
   std::function<bool(const std::vector<double>&)> verify;
-  /// Likewise about boxes that were not split further. True: they certainly hold a solution.
-  std::function<bool(const FlatBox&)> verify_box;
 };
 
 struct SearchResult {
-  enum class Kind : uint8_t { kEmpty, kPoint, kBox, kUndecided, kGaveUp };
+  enum class Kind : uint8_t { kEmpty, kPoint, kUndecided, kGaveUp };
   Kind kind = Kind::kGaveUp;
   std::vector<double> point;  ///< kPoint
-  FlatBox box;                ///< kUndecided: a box in which nothing could be excluded; kBox: with a solution
+  FlatBox box;                ///< kUndecided: a box in which nothing could be excluded
   uint64_t boxes = 0;
   std::vector<TreeNode> tree;  ///< of kEmpty, if it was recorded; the root first
 };

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+
+#include "solve/icp/contractor.h"
+
+namespace rondo::solve::icp {
+
+/// Proves that the equations of a formula have a common solution near a point, by Krawczyk's operator: as
+/// many variables as there are equations move in a small box, the others stay. Rigorous: interval
+/// derivatives, rounding included (Neumaier 1990, theorem 5.1.8).
+class Existence {
+ public:
+  Existence(const Tape& tape, const interval::Kernels& kernels);
+
+  size_t equations() const { return equations_.size(); }
+  /// Bounds of the variables between which all equations that the formula demands hold somewhere; those that
+  /// stay are points. nullopt: none are demanded, or nothing could be shown.
+  std::optional<std::vector<double>> Around(std::vector<double> point);
+
+ private:
+  bool Linearise(const std::vector<double>& box);
+  std::optional<std::vector<double>> Prove(const std::vector<double>& point, double radius);
+
+  const Tape& tape_;
+  Contractor contractor_;
+  InfluenceMeter meter_;
+  std::vector<uint32_t> equations_;                      // thresholds
+  std::vector<interval::Interval> residuals_;            // of the equations, over the last box
+  std::vector<std::vector<interval::Interval>> slopes_;  // by equation and variable
+};
+
+}  // namespace rondo::solve::icp

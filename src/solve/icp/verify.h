@@ -1,0 +1,39 @@
+#pragma once
+
+#include "solve/icp/existence.h"
+#include "solve/icp/point.h"
+
+namespace rondo::solve::icp {
+
+/// Values of all variables of a query at which it is true; if not `exact`, near which it certainly is.
+struct Solution {
+  Assignment values;
+  bool exact = true;
+};
+
+/// Establishes that a prepared conjunction, and so the query that it came from, has a solution.
+class Verifier {
+ public:
+  /// `tape` is the conjunction's, `lowered` the whole query.
+  Verifier(Lowered& lowered, const Prepared& prepared, const Tape& tape, const interval::Kernels& kernels);
+
+  /// At or near a point: a number for each variable of the tape.
+  std::optional<Solution> Verify(const std::vector<double>& point);
+
+ private:
+  std::optional<Solution> AtPoint(const std::vector<double>& point);
+  std::optional<Solution> NearPoint(const std::vector<double>& point);
+  Assignment Values(const std::vector<double>& point) const;
+  std::optional<bool> Complete(PointChecker& checker, Assignment& values) const;
+
+  Lowered& lowered_;
+  expr::Arena& arena_;
+  const Prepared& prepared_;
+  const Tape& tape_;
+  Existence existence_;
+  std::vector<TermId> formulas_;  // the conjuncts
+  std::vector<TermId> others_;    // those that are no equations
+  size_t equations_ = 0;
+};
+
+}  // namespace rondo::solve::icp
