@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Golden cases: programs that hold their command line and what must be reported about them.
 
-A case is src/<folder>/testdata/<topic>/<case>.koord (or .smt2, where comments begin with `;`). Its first line may be
+A case is src/<folder>/testdata/<topic>/<case>.koord (or .rondo, or .smt2, where comments begin with `;`). Its first line may be
 `# ARGS: prove ...` (default: check, or solve). Below each line of the program stand the diagnostics that concern it, as
 comments `#? kind[:column]: message`; those about no place stand at the end. With `OUTPUT` in the first line, the whole
 output for people stands at the end in lines `#> `.
@@ -85,7 +85,7 @@ def main():
     rondo = str(pathlib.Path(sys.argv[1]).resolve())
     update = "--update" in sys.argv
     wanted = [a for a in sys.argv[2:] if not a.startswith("--")]
-    cases = sorted([*ROOT.glob("src/**/testdata/**/*.koord"), *ROOT.glob("src/**/testdata/**/*.smt2")])
+    cases = sorted([*ROOT.glob("src/**/testdata/**/*.koord"), *ROOT.glob("src/**/testdata/**/*.smt2"), *ROOT.glob("src/**/testdata/**/*.rondo")])
     if wanted:
         cases = [c for c in cases if any(w in str(c) for w in wanted)]
     failed, kinds = 0, set()

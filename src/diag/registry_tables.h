@@ -9,6 +9,7 @@ namespace rondo::diag {
 
 std::span<const KindInfo> SyntaxKinds();
 std::span<const KindInfo> SmtKinds();
+std::span<const KindInfo> ChoreoKinds();
 std::span<const KindInfo> KoordNameKinds();
 std::span<const KindInfo> KoordTypeKinds();
 std::span<const KindInfo> KoordControlKinds();

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "driver/exit_status.h"
 #include "driver/load.h"
+#include "driver/motion.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "koord/check/check.h"
@@ -23,6 +25,10 @@ int Run(const Options& options) {
   bool readable = true;
   for (const std::string& file : options.files) {
     const size_t before = session.diagnostics.errors();
+    if (std::filesystem::path(file).extension() == ".rondo") {
+      readable = CheckMotion(file, session) && readable;
+      continue;
+    }
     const auto program = Load({file, options.spec, true}, session);
     if (!program) {
       readable = false;
@@ -46,8 +52,8 @@ int Run(const Options& options) {
 
 void AddCheckVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("check", "report every error and warning of Koord programs");
-  verb->add_option("FILE", options->files, "programs; `NAME.spec` beside one belongs to it")->required();
+  CLI::App* verb = app.add_subcommand("check", "report every error and warning of programs and choreographies");
+  verb->add_option("FILE", options->files, "Koord programs (`NAME.spec` beside one belongs to it), and robots and choreographies (`.rondo`)")->required();
   verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
   verb->add_flag("--json", options->json, "the diagnostics as JSON on standard output");
   verb->footer("example: rondo check examples/koord/delivery.koord");

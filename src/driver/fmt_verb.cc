@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "base/check.h"
 #include "base/file.h"
@@ -21,6 +22,10 @@ struct Options {
 };
 
 int FormatFile(const std::string& file, const Options& options) {
+  if (std::filesystem::path(file).extension() == ".rondo") {
+    PrintFailure(fmt::format("`{}`: only Koord programs and specifications are formatted so far", file));
+    return kRejected;
+  }
   Session session;
   const auto program = Load({file, {}, false}, session);
   if (!program) return kRejected;

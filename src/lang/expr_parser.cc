@@ -276,7 +276,10 @@ ExprId ExprParser::ParsePrimary() {
     case TokenKind::kFloat: {
       Take();
       const ExprKind kind = token.kind == TokenKind::kInt ? ExprKind::kInt : ExprKind::kFloat;
-      return pool_.Add({kind, token.span, std::string(token.text), {}, {}});
+      const ExprId number = pool_.Add({kind, token.span, std::string(token.text), {}, {}});
+      if (!AtKind(TokenKind::kName) || !IsUnit(Peek().text)) return number;
+      const Token unit = Take();
+      return pool_.Add({ExprKind::kQuantity, token.span.To(unit.span), std::string(unit.text), {number}, {}});
     }
     case TokenKind::kString:
       Take();

@@ -27,6 +27,8 @@ class ExprParser {
 
   /// Words that cannot be names of variables in this language.
   virtual bool IsReserved(std::string_view word) const = 0;
+  /// Words that may follow a literal number.
+  virtual bool IsUnit(std::string_view /*word*/) const { return false; }
   /// Called where an expression must go on: languages in which lines end here may go on in the next line.
   virtual void AllowLineBreak() {}
   virtual ~ExprParser() = default;

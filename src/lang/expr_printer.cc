@@ -44,6 +44,7 @@ int LevelOf(const Expr& e) {
     case ExprKind::kCall:
     case ExprKind::kList:
     case ExprKind::kTuple:
+    case ExprKind::kQuantity:
       return kPostfixLevel;
   }
   return kPostfixLevel;
@@ -106,6 +107,8 @@ class Printer {
         return fmt::format("[{}]", Items(e, 0));
       case ExprKind::kTuple:
         return fmt::format("({})", Items(e, 0));
+      case ExprKind::kQuantity:
+        return fmt::format("{} {}", Print(e.args[0], 0), e.text);
       case ExprKind::kQuantifier: {
         std::string binders;
         for (const Binder& b : e.binders) {

@@ -207,7 +207,8 @@ class Lexer {
     }
     for (const std::string_view sign : kPunctuation) {
       if (!text_.substr(at_).starts_with(sign)) continue;
-      if (sign == "?" || sign == "@" || sign == "\\" || sign == "&" || sign == "|") break;
+      if (sign == "?" || sign == "@" || sign == "\\" || sign == "&" || (sign == "|" && !options_.bar))
+        break;
       at_ += sign.size();
       return ReadPunctuation(begin, sign);
     }
@@ -225,7 +226,8 @@ class Lexer {
     if (sign.size() == 1 && (c == ')' || c == ']' || c == '}')) {
       const char open = c == ')' ? '(' : c == ']' ? '[' : '{';
       // One that closes nothing is a matter of the parser, which knows what should stand there instead.
-      if (!brackets_.empty() && brackets_.back().open == open) brackets_.pop_back();
+      const bool half_open = options_.half_open && c == ')' && !brackets_.empty() && brackets_.back().open == '[';
+      if (half_open || (!brackets_.empty() && brackets_.back().open == open)) brackets_.pop_back();
     }
     Emit(TokenKind::kPunctuation, begin, at_, sign);
   }

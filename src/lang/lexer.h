@@ -7,6 +7,8 @@ namespace rondo::lang {
 
 struct LexerOptions {
   bool indentation = true;  ///< emit kNewline, kIndent and kDedent; off for languages with braces
+  bool bar = false;         ///< is `|` a sign of its own?
+  bool half_open = false;   ///< may `)` close `[`, as in `[0, inf)`?
 };
 
 /// The tokens of a file. Never fails: bad input is reported and skipped, and the indentation tokens are

@@ -35,6 +35,7 @@ enum class ExprKind : uint8_t {
   kList,        // args: items
   kTuple,       // args: items, at least 2
   kQuantifier,  // text: forall or exists; binders; args: body
+  kQuantity,    // text: unit; args: a literal number
 };
 
 /// `i, j in ID`: the domain is a type if `type` has a name, else the expression `domain`.

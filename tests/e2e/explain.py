@@ -21,7 +21,8 @@ def main():
         liar.chmod(0o755)
         for kind in listed:
             info = json.loads(subprocess.run([rondo, "explain", "--json", kind["kind"]], capture_output=True, check=True).stdout)
-            program = pathlib.Path(folder) / (kind["kind"] + (".smt2" if info["verb"] in ("solve", "certify") else ".koord"))
+            suffix = ".smt2" if info["verb"] in ("solve", "certify") else ".rondo" if kind["kind"].startswith("choreo-") else ".koord"
+            program = pathlib.Path(folder) / (kind["kind"] + suffix)
             program.write_text(info["example"])
             args = [rondo, info["verb"], "--json", str(program)]
             if info["verb"] == "prove":

@@ -1,4 +1,4 @@
-// Runs a fuzz target over every Koord file below the given folders, and over truncations and mutations of
+// Runs a fuzz target over every source file below the given folders, and over truncations and mutations of
 // each.
 #include <cstdint>
 #include <cstdio>
@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(argv[i])) {
       const auto extension = entry.path().extension();
       if (!entry.is_regular_file() ||
-          (extension != ".koord" && extension != ".spec" && extension != ".smt2" && extension != ".bin"))
+          (extension != ".koord" && extension != ".spec" && extension != ".smt2" && extension != ".rondo" && extension != ".bin"))
         continue;
       std::ifstream in(entry.path(), std::ios::binary);
       const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

@@ -56,6 +56,8 @@ TypeId Checker::Visit(ExprId id, const lang::Expr& e) {
     }
     case ExprKind::kQuantifier:
       return Quantifier(id, e);
+    case ExprKind::kQuantity:
+      break;  // not part of Koord
   }
   return types.error();
 }

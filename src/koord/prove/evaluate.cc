@@ -156,6 +156,8 @@ TermId Executor::Eval(ExprId id) {
     }
     case ExprKind::kQuantifier:
       return Quantifier(id, e);
+    case ExprKind::kQuantity:
+      break;  // not part of Koord
   }
   CHECK(false) << "an erroneous expression got past the checker";
   return {};

@@ -36,7 +36,7 @@ bool Existence::Linearise(const std::vector<double>& box) {
   return true;
 }
 
-std::optional<std::vector<double>> Existence::Around(std::vector<double> point) {
+std::optional<std::vector<double>> Existence::Around(const std::vector<double>& point) {
   const size_t columns = point.size();
   if (equations_.empty() || equations_.size() > columns) return std::nullopt;
   for (const double radius : {1e-12, 1e-10, 1e-8, 1e-6, 1e-4}) {

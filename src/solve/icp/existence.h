@@ -16,7 +16,7 @@ class Existence {
   size_t equations() const { return equations_.size(); }
   /// Bounds of the variables between which all equations that the formula demands hold somewhere; those that
   /// stay are points. nullopt: none are demanded, or nothing could be shown.
-  std::optional<std::vector<double>> Around(std::vector<double> point);
+  std::optional<std::vector<double>> Around(const std::vector<double>& point);
 
  private:
   bool Linearise(const std::vector<double>& box);

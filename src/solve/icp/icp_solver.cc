@@ -11,8 +11,6 @@
 namespace rondo::solve::icp {
 namespace {
 
-using expr::Op;
-
 /// Decides one lowered query by cases.
 class Decision {
  public:

@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace rondo::solve::icp {
 
 using interval::Batch;
 
 namespace {
-
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 Batch Constant(double value) {
   Batch b;
@@ -83,7 +80,7 @@ void InfluenceMeter::Measure(const std::vector<Batch>& values, const std::vector
     for (size_t i = 0; i < cone.variables.size(); ++i) {
       for (size_t l = 0; l < kLanes; ++l) {
         if ((undecided >> l & 1) != 0 && sums[l] > 0)
-          scores[cone.variables[i] * kLanes + l] += parts_[i * kLanes + l] / sums[l];
+          scores[size_t{cone.variables[i]} * kLanes + l] += parts_[i * kLanes + l] / sums[l];
       }
     }
   }

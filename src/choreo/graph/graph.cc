@@ -1,0 +1,16 @@
+#include "choreo/graph/graph.h"
+
+namespace rondo::choreo {
+
+std::string Graph::Names(const Scope& scope) const {
+  std::string text;
+  size_t left = scope.size();
+  for (const RobotId r : scope) {
+    text += "`" + NameOf(r) + "`";
+    --left;
+    if (left > 0) text += left == 1 ? " and " : ", ";
+  }
+  return text;
+}
+
+}  // namespace rondo::choreo

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "choreo/graph/graph.h"
+#include "diag/diagnostic.h"
+
+/// What one robot sees of a choreography: its local type, as a deterministic automaton (Definition 4.7 of the
+/// paper, with the full merge: alternatives that the robot can tell apart by what happens to it are joined).
+namespace rondo::choreo {
+
+struct Action {
+  enum class Kind : uint8_t { kSend, kReceive, kMove } kind = Kind::kMove;
+  RobotId peer;       ///< of messages
+  std::string label;  ///< of the message, or the motion with its arguments
+  friend auto operator<=>(const Action&, const Action&) = default;
+};
+
+using StateId = base::Id<struct StateTag>;
+
+struct LocalState {
+  std::map<Action, StateId> next;
+  /// The robot chooses: guards and where they lead; an invalid guard: where the ones before do not hold.
+  std::vector<std::pair<ExprId, StateId>> choice;
+  bool ends = false;
+};
+
+struct LocalType {
+  RobotId robot;
+  std::vector<LocalState> states;  ///< the first is where it begins
+};
+
+/// The local type of `robot`. Reports where the robot cannot know what to do (`choreo-unmergeable`); then the
+/// type must not be used. Cost: exponential at worst in the number of alternatives that look alike to it;
+/// linear where it hears of every choice.
+LocalType Project(const Graph& graph, const lang::ExprPool& pool, RobotId robot, diag::Diagnostics& diagnostics);
+
+/// One line for each action: `3: receive arm.done -> 4`.
+std::string ToText(const Graph& graph, const lang::ExprPool& pool, const LocalType& type);
+
+}  // namespace rondo::choreo

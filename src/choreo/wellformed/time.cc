@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <functional>
+
+#include "choreo/wellformed/wellformed.h"
+
+namespace rondo::choreo {
+namespace {
+
+using diag::Kind;
+
+std::string Text(const Duration& d) {
+  return fmt::format("[{} s, {}", d.least.ToString(), d.most ? d.most->ToString() + " s]" : "inf)");
+}
+
+class Time {
+ public:
+  Time(const Graph& graph, diag::Diagnostics& diagnostics) : graph_(graph), diagnostics_(diagnostics) {}
+
+  void Run() {
+    for (const Node& n : graph_.nodes) {
+      if (n.kind == NodeKind::kMotion) Step(n);
+    }
+    const auto still = [](const Node& n) { return n.kind != NodeKind::kMotion; };
+    const auto silent = [&](const Node& n) { return still(n) && n.kind != NodeKind::kMessage; };
+    const NodeId unguarded = Cycle(silent);
+    if (unguarded.valid()) {
+      diagnostics_.Report(Kind::kChoreoUnguarded, graph_[unguarded].span, "this loop may go round without a step")
+          .Help("put a message or a motion on every way back to its beginning");
+      return;
+    }
+    if (const NodeId zeno = Cycle(still); zeno.valid()) {
+      diagnostics_.Report(Kind::kChoreoZeno, graph_[zeno].span, "this loop may go round without time passing")
+          .Note("there are messages in it, but no motion: infinitely many of them fit into no time at all");
+    }
+  }
+
+ private:
+  void Step(const Node& n) {
+    std::vector<const Part*> rigid;
+    for (const Part& p : n.parts) {
+      if (!p.duration.interruptible) rigid.push_back(&p);
+    }
+    if (rigid.size() > 1 && !(graph_.equal_durations && AreEqual(rigid))) {
+      auto& report = diagnostics_.Report(Kind::kChoreoTwoRigid, rigid[1]->span,
+                                         "two motions of one step cannot be interrupted");
+      report.At(rigid[0]->span, "this one, too")
+          .Note("neither robot can wait for the other: they need not end at the same time")
+          .Help("let one of them idle, or separate them in the threads of a `parallel`");
+      if (AreEqual(rigid)) report.Help("`option equal_durations` admits motions of one fixed duration");
+      return;
+    }
+    for (const Part& p : n.parts) {
+      for (const Part& q : n.parts) {
+        if (&p == &q || !q.duration.interruptible) continue;
+        const bool rigid_p = !p.duration.interruptible;
+        const bool early = rigid_p ? q.duration.least > p.duration.least
+                                   : p.duration.most && q.duration.least > *p.duration.most;
+        const bool late = rigid_p && q.duration.most && (!p.duration.most || *q.duration.most < *p.duration.most);
+        if (!early && !late) continue;
+        diagnostics_
+            .Report(Kind::kChoreoDurationOutside, q.span,
+                    fmt::format("this motion takes {}, which does not fit to {}", Text(q.duration), Text(p.duration)))
+            .At(p.span, fmt::format("this one takes {}", Text(p.duration)));
+        return;
+      }
+    }
+  }
+
+  static bool AreEqual(const std::vector<const Part*>& parts) {
+    for (const Part* p : parts) {
+      if (!p->duration.most || *p->duration.most != p->duration.least) return false;
+      if (p->duration.least != parts[0]->duration.least) return false;
+    }
+    return true;
+  }
+
+  // A node on a cycle of such nodes.
+  NodeId Cycle(const std::function<bool(const Node&)>& inside) const {
+    enum class Mark : uint8_t { kNew, kOpen, kDone };
+    std::vector<Mark> marks(graph_.nodes.size(), Mark::kNew);
+    std::vector<std::pair<NodeId, size_t>> path;
+    for (size_t start = 0; start < graph_.nodes.size(); ++start) {
+      if (marks[start] != Mark::kNew || !inside(graph_.nodes[start])) continue;
+      path.assign(1, {NodeId(start), 0});
+      marks[start] = Mark::kOpen;
+      while (!path.empty()) {
+        const NodeId id = path.back().first;
+        const auto& next = graph_[id].next;
+        if (path.back().second == next.size()) {
+          marks[id.index()] = Mark::kDone;
+          path.pop_back();
+          continue;
+        }
+        const NodeId to = next[path.back().second++];
+        if (!inside(graph_[to])) continue;
+        if (marks[to.index()] == Mark::kOpen) return to;
+        if (marks[to.index()] == Mark::kDone) continue;
+        marks[to.index()] = Mark::kOpen;
+        path.emplace_back(to, 0);
+      }
+    }
+    return {};
+  }
+
+  const Graph& graph_;
+  diag::Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+void CheckTime(const Graph& graph, diag::Diagnostics& diagnostics) { Time(graph, diagnostics).Run(); }
+
+}  // namespace rondo::choreo

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "choreo/graph/graph.h"
+#include "diag/diagnostic.h"
+
+/// Which choreographies can be carried out by robots that know only what they are told (Section 4.1 of the
+/// paper on motion session types; docs/theory.md lists the rules).
+namespace rondo::choreo {
+
+/// Reports every violation of the rules for choices, synchronisation and time, on every branch.
+void CheckWellFormed(const Graph& graph, diag::Diagnostics& diagnostics);
+
+/// Rule 2: the robot that chooses tells the others, with distinct labels. Cost: linear, nested choices apart.
+void CheckChoices(const Graph& graph, diag::Diagnostics& diagnostics);
+
+/// Rule 3: unique minimal communication after a motion, sender readiness, total synchronisation between
+/// motions. What may follow each motion is followed along the graph; loops are closed once nothing new can
+/// arrive. Cost: nodes times motions that are open at once.
+void CheckSynchronisation(const Graph& graph, diag::Diagnostics& diagnostics);
+
+/// Rule 4: at most one motion of a step cannot be interrupted, and the others last as long; no loop without
+/// motion. Cost: linear.
+void CheckTime(const Graph& graph, diag::Diagnostics& diagnostics);
+
+}  // namespace rondo::choreo

@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "choreo/project/project.h"
+#include "choreo/wellformed/wellformed.h"
+#include "driver/exit_status.h"
+#include "driver/motion.h"
+#include "driver/terminal.h"
+#include "driver/verbs.h"
+#include "lang/expr_printer.h"
+#include "lang/suggest.h"
+
+namespace rondo::driver {
+namespace {
+
+using choreo::Action;
+
+struct Options {
+  std::string file;
+  std::string robot;
+  bool json = false;
+};
+
+nlohmann::json ToJson(const choreo::Graph& graph, const lang::ExprPool& pool, const choreo::LocalType& type) {
+  nlohmann::json states = nlohmann::json::array();
+  for (const choreo::LocalState& s : type.states) {
+    nlohmann::json actions = nlohmann::json::array();
+    for (const auto& [action, to] : s.next) {
+      nlohmann::json j{{"action", action.kind == Action::Kind::kSend      ? "send"
+                                  : action.kind == Action::Kind::kReceive ? "receive"
+                                                                          : "move"},
+                       {"label", action.label},
+                       {"to", to.value}};
+      if (action.peer.valid()) j["peer"] = graph.NameOf(action.peer);
+      actions.push_back(std::move(j));
+    }
+    nlohmann::json choice = nlohmann::json::array();
+    for (const auto& [guard, to] : s.choice)
+      choice.push_back({{"guard", guard.valid() ? lang::PrintExpr(pool, guard) : "otherwise"}, {"to", to.value}});
+    states.push_back({{"actions", actions}, {"choice", choice}, {"ends", s.ends}});
+  }
+  return {{"choreography", graph.source->name.text}, {"robot", graph.NameOf(type.robot)}, {"states", states}};
+}
+
+int Run(const Options& options) {
+  Session session;
+  const auto motion = LoadMotion(options.file, session);
+  if (motion == nullptr) return kRejected;
+  nlohmann::json list = nlohmann::json::array();
+  std::string text;
+  std::vector<std::string> robots;
+  for (const choreo::Graph& graph : motion->graphs) {
+    choreo::CheckWellFormed(graph, session.diagnostics);
+    for (size_t r = 0; r < graph.robots.size(); ++r) {
+      robots.push_back(graph.robots[r].text);
+      if (!options.robot.empty() && options.robot != robots.back()) continue;
+      const size_t errors = session.diagnostics.errors();
+      const auto type = choreo::Project(graph, motion->module.exprs, choreo::RobotId(r), session.diagnostics);
+      if (session.diagnostics.errors() > errors) continue;
+      list.push_back(ToJson(graph, motion->module.exprs, type));
+      text += fmt::format("{} in {}\n{}", robots.back(), graph.source->name.text,
+                          choreo::ToText(graph, motion->module.exprs, type));
+    }
+  }
+  const bool good = !session.diagnostics.has_errors();
+  if (good && list.empty() && !options.robot.empty()) {
+    const std::string near = lang::Suggest(options.robot, robots);
+    PrintFailure(fmt::format("there is no robot `{}`{}", options.robot,
+                             near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
+    return kRejected;
+  }
+  if (options.json) {
+    nlohmann::json diagnostics = nlohmann::json::array();
+    for (const diag::Diagnostic& d : session.diagnostics.Sorted())
+      diagnostics.push_back(diag::RenderJson(session.sources, d));
+    PrintJson({{"command", "project"}, {"ok", good}, {"types", good ? list : nlohmann::json::array()}, {"diagnostics", diagnostics}});
+  } else {
+    if (good) Print(text);
+    PrintDiagnostics(session.sources, session.diagnostics);
+  }
+  return good ? kEstablished : kRejected;
+}
+
+}  // namespace
+
+void AddProjectVerb(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("project", "show what each robot of a choreography does: its local type");
+  verb->add_option("FILE", options->file, "robots, a world and choreographies (`.rondo`)")->required();
+  verb->add_option("ROBOT", options->robot, "only this robot");
+  verb->add_flag("--json", options->json, "the automata as JSON on standard output");
+  verb->footer(
+      "example: rondo project examples/choreo/handover.rondo arm\n\n"
+      "Each line is a step: the state, what the robot does or what happens to it, and the state behind it.");
+  verb->callback([options, &status] { status = Run(*options); });
+}
+
+}  // namespace rondo::driver
