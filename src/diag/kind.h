@@ -19,6 +19,7 @@ enum class Kind : uint8_t {
   kSyntaxUnterminatedString,
   kSyntaxNumber,
   kSyntaxNesting,
+  kSyntaxReservedName,
   // SMT-LIB scripts.
   kSmtSyntax,
   kSmtUndeclared,
@@ -46,13 +47,13 @@ enum class Kind : uint8_t {
   kChoreoNotInformed,
   kChoreoTwoRigid,
   kChoreoDurationOutside,
+  kChoreoThreadStill,
   kChoreoUnguarded,
   kChoreoZeno,
   kChoreoUnmergeable,
   // Koord: names.
   kKoordUndeclared,
   kKoordDuplicate,
-  kKoordReservedName,
   kKoordUnknownType,
   kKoordUnknownMember,
   kKoordAmbiguousPort,

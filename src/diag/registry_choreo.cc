@@ -1,11 +1,11 @@
 #include "diag/registry_tables.h"
 
 // Two robots of one type, for the examples.
-#define TEAM                                        \
-  "robot R {\n"                                     \
-  "  motion Idle() interruptible [0 s, inf) {}\n"   \
+#define TEAM                                       \
+  "robot R {\n"                                    \
+  "  motion Idle() interruptible [0 s, inf) {}\n"  \
   "  motion Go() noninterruptible [2 s, 2 s] {}\n" \
-  "}\n"                                             \
+  "}\n"                                            \
   "world W { a: R b: R }\n"
 
 namespace rondo::diag {
@@ -13,7 +13,8 @@ namespace {
 
 constexpr KindInfo kTable[] = {
     {Kind::kChoreoUndeclared, "choreo-undeclared", Severity::kError, "a name that nothing declares",
-     "Robot types, worlds, motions, recursions and options are declared before they can be used; robots are those "
+     "Robot types, worlds, motions, recursions and options are declared before they can be used; robots are "
+     "those "
      "of the\nworld.",
      TEAM "choreography C in W { a -> c: hello() }\n", "check"},
     {Kind::kChoreoDuplicate, "choreo-duplicate", Severity::kError, "a name that is declared twice",
@@ -23,79 +24,104 @@ constexpr KindInfo kTable[] = {
      "Arguments are given in order or by name; parameters without a default need one.",
      TEAM "choreography C in W { { a: Go(5 m), b: Idle() } }\n", "check"},
     {Kind::kChoreoDuration, "choreo-duration", Severity::kError, "a duration that is not a known time",
-     "How long a motion takes is `[least, most]`, in units of time: literal numbers, parameters and arguments. The "
+     "How long a motion takes is `[least, most]`, in units of time: literal numbers, parameters and "
+     "arguments. The "
      "rules for\nsynchronisation need to know it.",
      "robot R {\n  motion Go(d) noninterruptible [d, d] {}\n}\nworld W { a: R }\n"
      "choreography C in W { a: Go(5 m) }\n",
      "check"},
-    {Kind::kChoreoOutOfScope, "choreo-out-of-scope", Severity::kError, "a step across the threads of a `parallel`",
-     "The threads of a `parallel` do not meet: no message, no joint motion and no recursion leads from one to another.\n"
+    {Kind::kChoreoOutOfScope, "choreo-out-of-scope", Severity::kError,
+     "a step across the threads of a `parallel`",
+     "The threads of a `parallel` do not meet: no message, no joint motion and no recursion leads from one "
+     "to another.\n"
      "They meet again behind it.",
-     TEAM "choreography C in W {\n  parallel {\n    thread { a: Idle() b -> a: hello() }\n    thread { b: Idle() }\n"
+     TEAM "choreography C in W {\n  parallel {\n    thread { a: Idle() b -> a: hello() }\n    thread { b: "
+          "Idle() }\n"
           "  }\n}\n",
      "check"},
     {Kind::kChoreoSelfMessage, "choreo-self-message", Severity::kError, "a robot that sends to itself",
-     "A message has two ends, which wait for each other.",
-     TEAM "choreography C in W { a -> a: hello() }\n", "check"},
+     "A message has two ends, which wait for each other.", TEAM "choreography C in W { a -> a: hello() }\n",
+     "check"},
     {Kind::kChoreoRobotTwice, "choreo-robot-twice", Severity::kError, "a robot that does two things at once",
      "In a joint motion each robot moves once, and it belongs to one thread of a `parallel`.",
      TEAM "choreography C in W { { a: Idle(), a: Go(), b: Idle() } }\n", "check"},
-    {Kind::kChoreoRobotNowhere, "choreo-robot-nowhere", Severity::kError, "a robot in no thread of a `parallel`",
-     "Time passes for every robot. One that has nothing to do idles in a thread of its own, or in another one.",
+    {Kind::kChoreoRobotNowhere, "choreo-robot-nowhere", Severity::kError,
+     "a robot in no thread of a `parallel`",
+     "Time passes for every robot. One that has nothing to do idles in a thread of its own, or in another "
+     "one.",
      TEAM "world V { a: R b: R c: R }\n"
           "choreography D in V {\n  parallel { thread { a: Idle() } thread { b: Idle() } }\n}\n",
      "check"},
     {Kind::kChoreoNotMoving, "choreo-not-moving", Severity::kError, "a joint motion that leaves a robot out",
      "A step in which time passes says for every robot of its thread what it does meanwhile.",
      TEAM "choreography C in W { a: Go() }\n", "check"},
-    {Kind::kChoreoGuardOwner, "choreo-guard-owner", Severity::kError, "a guard that the robot which decides cannot see",
+    {Kind::kChoreoGuardOwner, "choreo-guard-owner", Severity::kError,
+     "a guard that the robot which decides cannot see",
      "The robot that chooses knows its own state and what it was told, nothing else.",
      TEAM "choreography C in W {\n  choose at a {\n    when b.ready { a -> b: yes() }\n"
           "    when not a.ready { a -> b: no() }\n  }\n}\n",
      "check"},
     {Kind::kChoreoUnreachable, "choreo-unreachable", Severity::kWarning, "a step that is never reached",
      "A `loop` has no end, and `continue` goes elsewhere: what follows in the same block never happens.",
-     TEAM "choreography C in W {\n  loop { { a: Go(), b: Idle() } a -> b: again() }\n  a -> b: done()\n}\n", "check"},
-    {Kind::kChoreoChoiceLabel, "choreo-choice-label", Severity::kError, "two alternatives that begin with one label",
+     TEAM "choreography C in W {\n  loop { { a: Go(), b: Idle() } a -> b: again() }\n  a -> b: done()\n}\n",
+     "check"},
+    {Kind::kChoreoChoiceLabel, "choreo-choice-label", Severity::kError,
+     "two alternatives that begin with one label",
      "The receiver tells alternatives apart by the label of the first message.",
      TEAM "choreography C in W {\n  choose at a {\n    when a.x > 1 m { a -> b: go() }\n"
           "    when a.x <= 1 m { a -> b: go() b -> a: why() }\n  }\n}\n",
      "check"},
-    {Kind::kChoreoChoiceSilent, "choreo-choice-silent", Severity::kError, "a choice of which the others hear nothing",
-     "Each alternative begins with a message of the robot that chose, unless that robot is alone in its thread.",
+    {Kind::kChoreoChoiceSilent, "choreo-choice-silent", Severity::kError,
+     "a choice of which the others hear nothing",
+     "Each alternative begins with a message of the robot that chose, unless that robot is alone in its "
+     "thread.",
      TEAM "choreography C in W {\n  choose at a {\n    when a.x > 1 m { b -> a: go() }\n"
           "    when a.x <= 1 m { a -> b: stay() }\n  }\n}\n",
      "check"},
     {Kind::kChoreoUnordered, "choreo-unordered", Severity::kError, "two messages that nothing orders",
-     "Behind a motion there must be one first message. A later one comes from a robot that has taken part in a message "
+     "Behind a motion there must be one first message. A later one comes from a robot that has taken part in "
+     "a message "
      "since:\nelse its receiver cannot know which of the two to expect (unique minimal communication).",
      "robot R {\n  motion Idle() interruptible [0 s, inf) {}\n}\nworld W { a: R b: R c: R }\n"
      "choreography C in W {\n  { a: Idle(), b: Idle(), c: Idle() }\n  a -> b: one()\n  c -> b: two()\n}\n",
      "check"},
     {Kind::kChoreoNotReady, "choreo-not-ready", Severity::kError, "a message while another robot cannot stop",
-     "The first message behind a motion is sent by the robot whose motion cannot be interrupted: only it knows that the "
+     "The first message behind a motion is sent by the robot whose motion cannot be interrupted: only it "
+     "knows that the "
      "motion\nhas ended (sender readiness).",
      TEAM "choreography C in W {\n  { a: Go(), b: Idle() }\n  b -> a: stop()\n}\n", "check"},
     {Kind::kChoreoMotionAfterMotion, "choreo-motion-after-motion", Severity::kError,
      "two joint motions without a message between them",
-     "The robots of a thread have no common clock: without a message they do not know when to change. A robot that is "
+     "The robots of a thread have no common clock: without a message they do not know when to change. A "
+     "robot that is "
      "alone\nin its thread needs none.",
      TEAM "choreography C in W {\n  { a: Go(), b: Idle() }\n  { a: Idle(), b: Go() }\n}\n", "check"},
-    {Kind::kChoreoNotInformed, "choreo-not-informed", Severity::kError, "a robot that is not told of a change of motion",
+    {Kind::kChoreoNotInformed, "choreo-not-informed", Severity::kError,
+     "a robot that is not told of a change of motion",
      "Between two motions each robot of the first takes part in a message (total synchronisation).",
      "robot R {\n  motion Idle() interruptible [0 s, inf) {}\n}\nworld W { a: R b: R c: R }\n"
-     "choreography C in W {\n  { a: Idle(), b: Idle(), c: Idle() }\n  a -> b: go()\n  { a: Idle(), b: Idle(), c: Idle() }\n}\n",
+     "choreography C in W {\n  { a: Idle(), b: Idle(), c: Idle() }\n  a -> b: go()\n  { a: Idle(), b: "
+     "Idle(), c: Idle() }\n}\n",
      "check"},
     {Kind::kChoreoTwoRigid, "choreo-two-noninterruptible", Severity::kError,
      "two motions of one step that cannot be interrupted",
-     "They may end at different times, and whoever ends first cannot wait in mid-motion. `option equal_durations` admits "
+     "They may end at different times, and whoever ends first cannot wait in mid-motion. `option "
+     "equal_durations` admits "
      "several\nof one fixed duration, as the published case studies have them.",
      TEAM "choreography C in W { { a: Go(), b: Go() } }\n", "check"},
     {Kind::kChoreoDurationOutside, "choreo-duration-outside", Severity::kError,
      "motions of one step whose durations do not fit",
      "The motion that cannot be interrupted ends while all others may: its duration lies within theirs.",
-     "robot R {\n  motion Wait() interruptible [0 s, 1 s] {}\n  motion Go() noninterruptible [2 s, 2 s] {}\n}\n"
+     "robot R {\n  motion Wait() interruptible [0 s, 1 s] {}\n  motion Go() noninterruptible [2 s, 2 s] "
+     "{}\n}\n"
      "world W { a: R b: R }\nchoreography C in W { { a: Go(), b: Wait() } }\n",
+     "check"},
+    {Kind::kChoreoThreadStill, "choreo-thread-still", Severity::kError, "a thread in which no time passes",
+     "Threads begin and end together. Where robots of one thread move, time passes for those of the others, "
+     "too: they "
+     "move or\nidle meanwhile.",
+     TEAM "world T { a: R b: R c: R }\nchoreography C in T {\n  parallel {\n    thread { a -> b: hello() }\n"
+          "    thread { c: Go() }\n  }\n}\n",
      "check"},
     {Kind::kChoreoUnguarded, "choreo-unguarded", Severity::kError, "a loop that may go round without a step",
      "A recursion has a message or a motion on every way back to its beginning.",
@@ -104,7 +130,8 @@ constexpr KindInfo kTable[] = {
      "Messages take no time: a loop of messages alone may run for ever at one instant.",
      TEAM "choreography C in W {\n  loop { a -> b: ping() b -> a: pong() }\n}\n", "check"},
     {Kind::kChoreoUnmergeable, "choreo-unmergeable", Severity::kError, "a robot that cannot know what to do",
-     "Alternatives that look alike to a robot must ask the same of it. Either it learns of the choice, by a message with "
+     "Alternatives that look alike to a robot must ask the same of it. Either it learns of the choice, by a "
+     "message with "
      "a label\nof its own, or it does not notice it (projection, Definition 4.7).",
      "robot R {\n  motion Idle() interruptible [0 s, inf) {}\n}\nworld W { a: R b: R c: R }\n"
      "choreography C in W {\n  choose at a {\n    when a.x > 1 m { a -> b: left() b -> c: go() }\n"

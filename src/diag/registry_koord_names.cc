@@ -14,11 +14,6 @@ constexpr KindInfo kTable[] = {
      "never\n"
      "used in the same place.)",
      "local:\n    int a\nallwrite:\n    bool a\nStep:\n    eff:\n        stop\n", "check"},
-    {Kind::kKoordReservedName, "koord-reserved-name", Severity::kError,
-     "a word of the language used as a name",
-     "Words such as `pre`, `eff`, `atomic` or `pid` structure programs and cannot name variables, types or "
-     "functions.",
-     "local:\n    int eff\nStep:\n    eff:\n        stop\n", "check"},
     {Kind::kKoordUnknownType, "koord-unknown-type", Severity::kError, "a type that does not exist",
      "Types are int, float, bool, string, stream, pos, List<T>, Queue<T>, arrays, and what `def adt` "
      "defines. A\n"

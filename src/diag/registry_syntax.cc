@@ -47,6 +47,11 @@ constexpr KindInfo kTable[] = {
      ")))))))))"
      "))))))))))))))))\nStep:\n    eff:\n        stop\n",
      "check"},
+    {Kind::kSyntaxReservedName, "syntax-reserved-name", Severity::kError,
+     "a word of the language used as a name",
+     "Words such as `pre`, `eff`, `atomic` or `pid` structure programs and cannot name variables, types or "
+     "functions.",
+     "local:\n    int eff\nStep:\n    eff:\n        stop\n", "check"},
 };
 
 }  // namespace

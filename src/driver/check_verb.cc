@@ -52,8 +52,12 @@ int Run(const Options& options) {
 
 void AddCheckVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("check", "report every error and warning of programs and choreographies");
-  verb->add_option("FILE", options->files, "Koord programs (`NAME.spec` beside one belongs to it), and robots and choreographies (`.rondo`)")->required();
+  CLI::App* verb =
+      app.add_subcommand("check", "report every error and warning of programs and choreographies");
+  verb->add_option(
+          "FILE", options->files,
+          "Koord programs (`NAME.spec` beside one belongs to it), and robots and choreographies (`.rondo`)")
+      ->required();
   verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
   verb->add_flag("--json", options->json, "the diagnostics as JSON on standard output");
   verb->footer("example: rondo check examples/koord/delivery.koord");

@@ -21,7 +21,8 @@ std::unique_ptr<Motion> LoadMotion(const std::string& file, Session& session) {
   const size_t errors = session.diagnostics.errors();
   choreo::Parse(session.sources, session.sources.Add(file, std::move(text).value()), motion->module,
                 session.diagnostics);
-  if (session.diagnostics.errors() == errors) motion->graphs = choreo::Lower(motion->module, session.diagnostics);
+  if (session.diagnostics.errors() == errors)
+    motion->graphs = choreo::Lower(motion->module, session.diagnostics);
   return motion;
 }
 

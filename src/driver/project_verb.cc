@@ -38,7 +38,8 @@ nlohmann::json ToJson(const choreo::Graph& graph, const lang::ExprPool& pool, co
     }
     nlohmann::json choice = nlohmann::json::array();
     for (const auto& [guard, to] : s.choice)
-      choice.push_back({{"guard", guard.valid() ? lang::PrintExpr(pool, guard) : "otherwise"}, {"to", to.value}});
+      choice.push_back(
+          {{"guard", guard.valid() ? lang::PrintExpr(pool, guard) : "otherwise"}, {"to", to.value}});
     states.push_back({{"actions", actions}, {"choice", choice}, {"ends", s.ends}});
   }
   return {{"choreography", graph.source->name.text}, {"robot", graph.NameOf(type.robot)}, {"states", states}};
@@ -75,7 +76,10 @@ int Run(const Options& options) {
     nlohmann::json diagnostics = nlohmann::json::array();
     for (const diag::Diagnostic& d : session.diagnostics.Sorted())
       diagnostics.push_back(diag::RenderJson(session.sources, d));
-    PrintJson({{"command", "project"}, {"ok", good}, {"types", good ? list : nlohmann::json::array()}, {"diagnostics", diagnostics}});
+    PrintJson({{"command", "project"},
+               {"ok", good},
+               {"types", good ? list : nlohmann::json::array()},
+               {"diagnostics", diagnostics}});
   } else {
     if (good) Print(text);
     PrintDiagnostics(session.sources, session.diagnostics);
@@ -87,7 +91,8 @@ int Run(const Options& options) {
 
 void AddProjectVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("project", "show what each robot of a choreography does: its local type");
+  CLI::App* verb =
+      app.add_subcommand("project", "show what each robot of a choreography does: its local type");
   verb->add_option("FILE", options->file, "robots, a world and choreographies (`.rondo`)")->required();
   verb->add_option("ROBOT", options->robot, "only this robot");
   verb->add_flag("--json", options->json, "the automata as JSON on standard output");

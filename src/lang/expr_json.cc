@@ -7,9 +7,9 @@
 namespace rondo::lang {
 
 nlohmann::json ExprToJson(const diag::SourceSet& sources, const ExprPool& pool, ExprId id) {
-  constexpr const char* kNames[] = {"error", "int",  "float", "string", "bool", "name",  "pid",       "field",
-                                    "index", "call", "unary", "binary", "list", "tuple", "quantifier",
-                                    "quantity"};
+  constexpr const char* kNames[] = {"error", "int",   "float",      "string",  "bool",  "name",
+                                    "pid",   "field", "index",      "call",    "unary", "binary",
+                                    "list",  "tuple", "quantifier", "quantity"};
   const Expr& e = pool[id];
   const diag::Position p = sources.Locate(e.span.file, e.span.begin);
   nlohmann::json j{{"expr", kNames[static_cast<size_t>(e.kind)]}, {"line", p.line}, {"column", p.column}};

@@ -73,7 +73,7 @@ std::string ExprParser::ExpectName(std::string_view what) {
   if (AtKind(TokenKind::kName) && !failed_) {
     failed_ = true;
     diagnostics_
-        .Report(Kind::kKoordReservedName, Peek().span,
+        .Report(Kind::kSyntaxReservedName, Peek().span,
                 fmt::format("`{}` is a word of the language", Peek().text))
         .Under(fmt::format("cannot be {}", what));
     return {};

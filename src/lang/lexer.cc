@@ -111,7 +111,8 @@ class Lexer {
       if (at_ < text_.size()) SkipLineEnd();
       return;
     }
-    if (!brackets_.empty() && width == 0 && StartsSection()) CloseBrackets("the next section");
+    if (options_.indentation && !brackets_.empty() && width == 0 && StartsSection())
+      CloseBrackets("the next section");
     if (!options_.indentation || !brackets_.empty() || joined_) {
       joined_ = false;
       return;
@@ -207,8 +208,7 @@ class Lexer {
     }
     for (const std::string_view sign : kPunctuation) {
       if (!text_.substr(at_).starts_with(sign)) continue;
-      if (sign == "?" || sign == "@" || sign == "\\" || sign == "&" || (sign == "|" && !options_.bar))
-        break;
+      if (sign == "?" || sign == "@" || sign == "\\" || sign == "&" || (sign == "|" && !options_.bar)) break;
       at_ += sign.size();
       return ReadPunctuation(begin, sign);
     }
@@ -226,7 +226,8 @@ class Lexer {
     if (sign.size() == 1 && (c == ')' || c == ']' || c == '}')) {
       const char open = c == ')' ? '(' : c == ']' ? '[' : '{';
       // One that closes nothing is a matter of the parser, which knows what should stand there instead.
-      const bool half_open = options_.half_open && c == ')' && !brackets_.empty() && brackets_.back().open == '[';
+      const bool half_open =
+          options_.half_open && c == ')' && !brackets_.empty() && brackets_.back().open == '[';
       if (half_open || (!brackets_.empty() && brackets_.back().open == open)) brackets_.pop_back();
     }
     Emit(TokenKind::kPunctuation, begin, at_, sign);

@@ -31,7 +31,7 @@ def check(name, good, detail=""):
 
 LINEFORM = "examples/koord/lineform.koord"
 
-for args in (["--help"], ["check", "--help"], ["prove", "--help"], ["fmt", "--help"], ["explain", "--help"], ["ast", "--help"], ["solve", "--help"], ["certify", "--help"]):
+for args in (["--help"], ["check", "--help"], ["prove", "--help"], ["fmt", "--help"], ["explain", "--help"], ["ast", "--help"], ["solve", "--help"], ["certify", "--help"], ["project", "--help"]):
     done = rondo(*args)
     check(f"{args}", done.returncode == 0 and "example" in done.stdout, done.stdout + done.stderr)
 for args in ([], ["nonsense"], ["prove"], ["prove", LINEFORM, "--robots", "0"], ["explain", "koord-nonsense"]):
@@ -73,6 +73,19 @@ check("undecided", rondo("solve", "--solver", "icp", str(identity)).returncode =
 done = rondo("solve", "--solver", "no-such-solver", str(polynomial))
 check("a solver that is not there", done.returncode == 3 and "no-such-solver" in done.stdout, done.stdout + done.stderr)
 check("no script", rondo("solve", "missing.smt2").returncode == 1)
+
+# Choreographies: the examples are well-formed and have projections; a robot that is not there; a file that is not.
+for example in sorted((ROOT / "examples/choreo").glob("*.rondo")):
+    check(f"check {example.name}", rondo("check", str(example)).returncode == 0)
+    done = rondo("project", "--json", str(example))
+    check(f"project {example.name}", done.returncode == 0 and len(json.loads(done.stdout)["types"]) >= 2, done.stdout)
+shuttle = "examples/choreo/shuttle.rondo"
+done = rondo("project", shuttle, "green")
+check("project one robot", "receive cart.arrive" in done.stdout and "green in Shuttle" in done.stdout, done.stdout)
+done = rondo("project", shuttle, "gren")
+check("project nobody", done.returncode == 1 and "did you mean `green`" in done.stderr, done.stderr)
+check("project nothing", rondo("project", "missing.rondo").returncode == 1)
+check("no formatter yet", "only Koord programs" in rondo("fmt", "--check", shuttle).stderr)
 
 # The cache: the second run finds the proofs; a changed program does not.
 cached = rondo("prove", LINEFORM)

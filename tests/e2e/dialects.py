@@ -76,7 +76,7 @@ CASES = [
     ("chained comparison", "local:\n    bool a\n    int n\n" + STEP.format("a = n < 1 < 2"), ["syntax-unexpected"]),
     ("inconsistent dedent", "Step:\n    eff:\n            stop\n        stop\n", ["syntax-indentation"]),
     ("no event", "local:\n    int n\n", ["koord-no-event"]),
-    ("keyword as name", "local:\n    int eff\n" + STEP.format("stop"), ["koord-reserved-name"]),
+    ("keyword as name", "local:\n    int eff\n" + STEP.format("stop"), ["syntax-reserved-name"]),
     ("duplicate event", STEP.format("stop") + STEP.format("stop"), ["koord-duplicate"]),
     ("non-Boolean pre", "local:\n    int n\nStep:\n    pre: n\n    eff:\n        stop\n", ["koord-not-boolean"]),
     ("ill-typed initialiser", "local:\n    int n = \"x\"\n" + STEP.format("stop"), ["koord-type-mismatch"]),

@@ -13,7 +13,8 @@ constexpr int kDeepest = 50;  // parameters whose defaults mention parameters
 
 class Evaluator {
  public:
-  Evaluator(const lang::ExprPool& pool, const Environment& environment) : pool_(pool), environment_(environment) {}
+  Evaluator(const lang::ExprPool& pool, const Environment& environment)
+      : pool_(pool), environment_(environment) {}
 
   std::optional<Quantity> Eval(ExprId id) {
     if (!id.valid()) return std::nullopt;
@@ -49,7 +50,8 @@ class Evaluator {
     const lang::Unit* unit = lang::FindUnit(e.text);
     auto number = Eval(e.args[0]);
     if (!number || unit == nullptr || unit->half_turns) return std::nullopt;
-    return Quantity{number->value * Rational(unit->numerator) / Rational(unit->denominator), unit->dimension, false};
+    return Quantity{number->value * Rational(unit->numerator) / Rational(unit->denominator), unit->dimension,
+                    false};
   }
 
   std::optional<Quantity> Named(const Expr& e) {

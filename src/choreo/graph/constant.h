@@ -19,8 +19,9 @@ struct Quantity {
 
 using Environment = std::map<std::string, lang::ExprId, std::less<>>;
 
-/// The value of an expression of literal numbers and of names in `environment`; nullopt if it is not constant,
-/// or has no rational value (angles in degrees).
-std::optional<Quantity> Constant(const lang::ExprPool& pool, lang::ExprId expr, const Environment& environment);
+/// The value of an expression of literal numbers and of names in `environment`; nullopt if it is not
+/// constant, or has no rational value (angles in degrees).
+std::optional<Quantity> Constant(const lang::ExprPool& pool, lang::ExprId expr,
+                                 const Environment& environment);
 
 }  // namespace rondo::choreo

@@ -42,15 +42,16 @@ struct Node {
   RobotId from, to;          ///< kMessage
   std::string label;
   const Stmt* message = nullptr;
-  std::vector<Part> parts;      ///< kMotion: one for each robot in scope
-  RobotId chooser;              ///< kChoice
-  std::vector<ExprId> guards;   ///< kChoice, for each of `next`; invalid: where the guards before do not hold
-  std::vector<Scope> threads;   ///< kFork, for each of `next`
-  NodeId join;                  ///< kFork
+  std::vector<Part> parts;     ///< kMotion: one for each robot in scope
+  RobotId chooser;             ///< kChoice
+  std::vector<ExprId> guards;  ///< kChoice, for each of `next`; invalid: where the guards before do not hold
+  std::vector<Scope> threads;  ///< kFork, for each of `next`
+  NodeId join;                 ///< kFork
+  const Stmt* threads_of = nullptr;  ///< kFork: as written
 };
 
-/// A choreography, whatever it was written in: messages, joint motions, choices, and threads of robots that do
-/// not meet. Refers to the module that it was made from.
+/// A choreography, whatever it was written in: messages, joint motions, choices, and threads of robots that
+/// do not meet. Refers to the module that it was made from.
 struct Graph {
   const ChoreographyDef* source = nullptr;
   std::vector<Name> robots;

@@ -40,9 +40,13 @@ class Declarations {
     return nullptr;
   }
 
-  void Undeclared(const Name& name, std::string_view what, const std::vector<std::string>& names) {
+  // `owner`: what should have it; empty if the whole module.
+  void Undeclared(const Name& name, std::string_view what, const std::vector<std::string>& names,
+                  std::string_view owner = {}) {
     auto& report =
-        diagnostics_.Report(Kind::kChoreoUndeclared, name.span, fmt::format("there is no {} `{}`", what, name.text));
+        diagnostics_.Report(Kind::kChoreoUndeclared, name.span,
+                            owner.empty() ? fmt::format("there is no {} `{}`", what, name.text)
+                                          : fmt::format("`{}` has no {} `{}`", owner, what, name.text));
     if (const std::string near = lang::Suggest(name.text, names); !near.empty())
       report.Help(fmt::format("did you mean `{}`?", near)).Fix(name.span, near);
   }
@@ -86,7 +90,8 @@ class Lowering {
       graph_.robots.push_back(c.name);
       graph_.types.push_back(declarations_.Find(declarations_.robots, c.type, "robot type"));
       if (!robots_.emplace(c.name.text, id).second)
-        diagnostics_.Report(Kind::kChoreoDuplicate, c.name.span, fmt::format("`{}` is declared twice", c.name.text));
+        diagnostics_.Report(Kind::kChoreoDuplicate, c.name.span,
+                            fmt::format("`{}` is declared twice", c.name.text));
       everybody.insert(id);
     }
     Node end;
@@ -207,7 +212,8 @@ class Lowering {
                               missing.size() == 1 ? "does" : "do"))
           .Note("time passes for every robot of a thread in each of its steps")
           .Help(fmt::format("write all motions of the step in braces: `{{ {}: ..., {}: Idle() }}`",
-                            s.motions.empty() ? "a" : s.motions[0].robot.text, graph_.NameOf(*missing.begin())));
+                            s.motions.empty() ? "a" : s.motions[0].robot.text,
+                            graph_.NameOf(*missing.begin())));
     }
     node.next = {next};
     return Add(std::move(node));
@@ -229,7 +235,7 @@ class Lowering {
       if (candidate->name.text == call.motion.text) motion = candidate;
     }
     if (motion == nullptr) {
-      declarations_.Undeclared(call.motion, fmt::format("motion of {}", type->name.text), names);
+      declarations_.Undeclared(call.motion, "motion", names, type->name.text);
       return std::nullopt;
     }
     if (!Bind(*motion, call, environment)) return std::nullopt;
@@ -266,7 +272,8 @@ class Lowering {
         given[motion.params[position++].name.text] = a.value;
         continue;
       }
-      const bool known = std::ranges::any_of(motion.params, [&](const Param& p) { return p.name.text == a.name.text; });
+      const bool known =
+          std::ranges::any_of(motion.params, [&](const Param& p) { return p.name.text == a.name.text; });
       if (known && given.emplace(a.name.text, a.value).second) continue;
       good = false;
       std::vector<std::string> names;
@@ -274,7 +281,7 @@ class Lowering {
       if (known) {
         diagnostics_.Report(Kind::kChoreoArity, a.name.span, fmt::format("`{}` is given twice", a.name.text));
       } else {
-        declarations_.Undeclared(a.name, fmt::format("parameter of `{}`", motion.name.text), names);
+        declarations_.Undeclared(a.name, "parameter", names, motion.name.text);
       }
     }
     for (const Param& p : motion.params) {
@@ -297,8 +304,9 @@ class Lowering {
     const auto value = Constant(pool_, e, environment);
     const bool zero = value && value->value.IsZero() && value->dimension == lang::Dimension{};
     if (value && (zero || value->dimension == lang::Dimension{0, 1, 0})) return value;
-    auto& report = diagnostics_.Report(Kind::kChoreoDuration, pool_[e].span,
-                                       value ? "a duration is a time" : "the duration of a motion must be known");
+    auto& report =
+        diagnostics_.Report(Kind::kChoreoDuration, pool_[e].span,
+                            value ? "a duration is a time" : "the duration of a motion must be known");
     report.At(call, "for this motion");
     if (value) report.Help("write the unit: `5 s`");
     return std::nullopt;
@@ -369,6 +377,7 @@ class Lowering {
     fork.span = s.span;
     fork.scope = scope;
     fork.threads = Threads(s, scope);
+    fork.threads_of = &s;
     fork.join = Add(std::move(join));
     // A recursion around the threads cannot go on from inside one of them.
     auto outer = std::exchange(recursions_, {});
@@ -403,7 +412,8 @@ class Lowering {
     choice.scope = scope;
     const std::map<RobotId, Span> owners = Owners(s.guard);
     if (owners.empty()) {
-      diagnostics_.Report(Kind::kChoreoGuardOwner, pool_[s.guard].span, "this guard reads the state of no robot")
+      diagnostics_
+          .Report(Kind::kChoreoGuardOwner, pool_[s.guard].span, "this guard reads the state of no robot")
           .Note("the robot whose state a guard reads decides whether the loop goes on");
     } else {
       choice.chooser = owners.begin()->first;
@@ -420,7 +430,8 @@ class Lowering {
   NodeId Recursion(const Stmt& s, NodeId next, const Scope& scope) {
     const NodeId head = AddMerge(s.span, scope);
     const auto before = recursions_.find(s.label.text);
-    const std::optional<NodeId> hidden = before == recursions_.end() ? std::nullopt : std::optional(before->second);
+    const std::optional<NodeId> hidden =
+        before == recursions_.end() ? std::nullopt : std::optional(before->second);
     recursions_[s.label.text] = head;
     SetNext(head, Statements(s.body, next, scope));
     recursions_.erase(s.label.text);
@@ -466,7 +477,8 @@ class Lowering {
           .Report(Kind::kChoreoGuardOwner, span,
                   fmt::format("this guard reads the state of `{}`, but `{}` decides", graph_.NameOf(robot),
                               graph_.NameOf(owner)))
-          .Help(fmt::format("let `{}` send what it knows to `{}` first", graph_.NameOf(robot), graph_.NameOf(owner)));
+          .Help(fmt::format("let `{}` send what it knows to `{}` first", graph_.NameOf(robot),
+                            graph_.NameOf(owner)));
     }
   }
 
@@ -486,7 +498,8 @@ std::vector<Graph> Lower(const Module& module, diag::Diagnostics& diagnostics) {
   for (const Item& item : module.items) {
     const auto* choreography = std::get_if<ChoreographyDef>(&item);
     if (choreography == nullptr) continue;
-    if (auto graph = Lowering(module, declarations, diagnostics).Run(*choreography)) graphs.push_back(std::move(*graph));
+    if (auto graph = Lowering(module, declarations, diagnostics).Run(*choreography))
+      graphs.push_back(std::move(*graph));
   }
   return graphs;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "lang/expr_printer.h"
@@ -43,8 +44,9 @@ class Projection {
   }
 
   LocalType Run() {
-    StateOf(Closure({graph_.start}), "");
+    StateOf(Closure({graph_.start}), {});
     for (size_t s = 0; s < sets_.size(); ++s) Expand(s);
+    for (size_t s = 0; s < sets_.size(); ++s) CompareWithLater(s);
     return std::move(type_);
   }
 
@@ -89,11 +91,17 @@ class Projection {
     return result;
   }
 
-  StateId StateOf(Set set, std::string history) {
+  // How a state was first reached: from which other one, and by what, if by anything.
+  struct Way {
+    size_t from = 0;
+    std::optional<Action> action;
+  };
+
+  StateId StateOf(Set set, Way way) {
     const auto [it, fresh] = states_.emplace(set, StateId(sets_.size()));
     if (fresh) {
       sets_.push_back(std::move(set));
-      histories_.push_back(std::move(history));
+      ways_.push_back(std::move(way));
       type_.states.emplace_back();
     }
     return it->second;
@@ -129,16 +137,16 @@ class Projection {
       }
     }
     type_.states[s].ends = end.valid();
+    origins_.push_back(origins);
     Compare(s, origins, choice, end);
     for (auto& [action, nodes] : targets) {
-      const std::string history = histories_[s] + (histories_[s].empty() ? "" : ", ") + Describe(graph_, action);
-      const StateId to = StateOf(Closure(std::move(nodes)), history);
+      const StateId to = StateOf(Closure(std::move(nodes)), {s, action});
       type_.states[s].next.emplace(action, to);
     }
     if (!choice.valid()) return;
     const Node& n = graph_[choice];
     for (size_t b = 0; b < n.next.size(); ++b) {
-      const StateId to = StateOf(Closure({n.next[b]}), histories_[s]);
+      const StateId to = StateOf(Closure({n.next[b]}), {s, std::nullopt});
       type_.states[s].choice.emplace_back(n.guards[b], to);
     }
   }
@@ -161,18 +169,52 @@ class Projection {
     }
   }
 
+  // A message that may come before a motion or right behind it: a motion may be short, so its receiver could
+  // not tell.
+  void CompareWithLater(size_t s) {
+    std::set<size_t> seen{s};
+    for (size_t t = s; true;) {
+      const auto& next = type_.states[t].next;
+      const auto move =
+          std::ranges::find_if(next, [](const auto& a) { return a.first.kind == Action::Kind::kMove; });
+      if (move == next.end()) return;
+      t = move->second.index();
+      if (!seen.insert(t).second) return;
+      for (const auto& [action, to] : type_.states[s].next) {
+        if (action.kind != Action::Kind::kReceive) continue;
+        const auto later = type_.states[t].next.find(action);
+        if (later != type_.states[t].next.end() && later->second != to)
+          return Unclear(s, origins_[s].at(action), origins_[t].at(action));
+      }
+    }
+  }
+
   void Unclear(size_t s, NodeId a, NodeId b) {
-    auto& report = diagnostics_.Report(Kind::kChoreoUnmergeable, graph_[a].span,
-                                       fmt::format("`{}` cannot know whether this comes next", graph_.NameOf(robot_)));
+    auto& report =
+        diagnostics_.Report(Kind::kChoreoUnmergeable, graph_[a].span,
+                            fmt::format("`{}` cannot know whether this comes next", graph_.NameOf(robot_)));
     if (graph_[b].kind == NodeKind::kEnd) {
       report.Note("or whether the choreography has ended");
     } else {
       report.At(graph_[b].span, "or this, depending on a choice that it is not told of");
     }
+    const std::string history = History(s);
     report
-        .Note(histories_[s].empty() ? "nothing has happened to it so far"
-                                    : fmt::format("all that it has seen by then: {}", histories_[s]))
+        .Note(history.empty() ? "nothing has happened to it so far"
+                              : fmt::format("all that it has seen by then: {}", history))
         .Help("send it a message in each alternative");
+  }
+
+  // A shortest run to a state, as the robot sees it; of a long one, the end.
+  std::string History(size_t s) const {
+    constexpr int kMostSteps = 8;
+    std::string text;
+    for (int steps = 0; s != 0; s = ways_[s].from) {
+      if (!ways_[s].action) continue;
+      if (++steps > kMostSteps) return "..., " + text;
+      text = Describe(graph_, *ways_[s].action) + (text.empty() ? "" : ", ") + text;
+    }
+    return text;
   }
 
   const Graph& graph_;
@@ -182,12 +224,14 @@ class Projection {
   LocalType type_;
   std::map<Set, StateId> states_;
   std::vector<Set> sets_;
-  std::vector<std::string> histories_;  // a shortest one for each state
+  std::vector<Way> ways_;
+  std::vector<std::map<Action, NodeId>> origins_;  // by state
 };
 
 }  // namespace
 
-LocalType Project(const Graph& graph, const lang::ExprPool& pool, RobotId robot, diag::Diagnostics& diagnostics) {
+LocalType Project(const Graph& graph, const lang::ExprPool& pool, RobotId robot,
+                  diag::Diagnostics& diagnostics) {
   return Projection(graph, pool, robot, diagnostics).Run();
 }
 

@@ -35,7 +35,8 @@ struct LocalType {
 /// The local type of `robot`. Reports where the robot cannot know what to do (`choreo-unmergeable`); then the
 /// type must not be used. Cost: exponential at worst in the number of alternatives that look alike to it;
 /// linear where it hears of every choice.
-LocalType Project(const Graph& graph, const lang::ExprPool& pool, RobotId robot, diag::Diagnostics& diagnostics);
+LocalType Project(const Graph& graph, const lang::ExprPool& pool, RobotId robot,
+                  diag::Diagnostics& diagnostics);
 
 /// One line for each action: `3: receive arm.done -> 4`.
 std::string ToText(const Graph& graph, const lang::ExprPool& pool, const LocalType& type);

@@ -109,8 +109,8 @@ struct Stmt;
 
 /// A thread of `parallel`, or an alternative of `choose`.
 struct Branch {
-  diag::Span span;           ///< of the line that opens it
-  ExprId guard;              ///< kChoose
+  diag::Span span;            ///< of the line that opens it
+  ExprId guard;               ///< kChoose
   std::vector<Clause> facts;  ///< kParallel: `region`, `assume`, `guarantee`
   std::vector<Stmt> body;
 };

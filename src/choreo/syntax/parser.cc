@@ -17,11 +17,12 @@ using diag::Span;
 using lang::TokenKind;
 
 constexpr std::array<std::string_view, 31> kWords = {
-    "robot",   "world",    "choreography", "param",    "state",     "motion",       "interruptible", "noninterruptible",
-    "in",      "at",       "initially",    "option",   "parallel",  "thread",       "choose",        "when",
-    "loop",    "while",    "rec",          "continue", "region",    "assume",       "guarantee",     "and",
-    "or",      "not",      "implies",      "true",     "false",     "forall",       "exists"};
-constexpr std::array<std::string_view, 6> kClauses = {"pre", "assume", "during", "post", "footprint", "modifies"};
+    "robot", "world", "choreography", "param",    "state",    "motion", "interruptible", "noninterruptible",
+    "in",    "at",    "initially",    "option",   "parallel", "thread", "choose",        "when",
+    "loop",  "while", "rec",          "continue", "region",   "assume", "guarantee",     "and",
+    "or",    "not",   "implies",      "true",     "false",    "forall", "exists"};
+constexpr std::array<std::string_view, 6> kClauses = {"pre",  "assume",    "during",
+                                                      "post", "footprint", "modifies"};
 constexpr std::array<std::string_view, 3> kFacts = {"region", "assume", "guarantee"};
 constexpr int kDeepestBlock = 100;
 
@@ -402,9 +403,12 @@ class Parser : public lang::ExprParser {
 
 }  // namespace
 
-bool IsReservedWord(std::string_view word) { return Contains(kWords, word) || lang::FindUnit(word) != nullptr; }
+bool IsReservedWord(std::string_view word) {
+  return Contains(kWords, word) || lang::FindUnit(word) != nullptr;
+}
 
-void Parse(const diag::SourceSet& sources, diag::FileId file, Module& module, diag::Diagnostics& diagnostics) {
+void Parse(const diag::SourceSet& sources, diag::FileId file, Module& module,
+           diag::Diagnostics& diagnostics) {
   lang::LexerOptions options;
   options.indentation = false;
   options.bar = true;
