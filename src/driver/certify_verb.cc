@@ -79,9 +79,7 @@ int Run(const Options& options) {
   }
   const bool good = readable && !session.diagnostics.has_errors() && !stopped;
   if (options.json) {
-    nlohmann::json diagnostics = nlohmann::json::array();
-    for (const diag::Diagnostic& d : session.diagnostics.Sorted())
-      diagnostics.push_back(diag::RenderJson(session.sources, d));
+    const nlohmann::json diagnostics = DiagnosticsToJson(session.sources, session.diagnostics);
     PrintJson({{"command", "certify"}, {"ok", good}, {"files", list}, {"diagnostics", diagnostics}});
   } else {
     Print(text);

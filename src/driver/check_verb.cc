@@ -38,9 +38,7 @@ int Run(const Options& options) {
   }
   const bool good = readable && !session.diagnostics.has_errors();
   if (options.json) {
-    nlohmann::json list = nlohmann::json::array();
-    for (const diag::Diagnostic& d : session.diagnostics.Sorted())
-      list.push_back(diag::RenderJson(session.sources, d));
+    const nlohmann::json list = DiagnosticsToJson(session.sources, session.diagnostics);
     PrintJson({{"command", "check"}, {"ok", good}, {"diagnostics", list}});
   } else {
     PrintDiagnostics(session.sources, session.diagnostics);

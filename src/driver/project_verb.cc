@@ -73,9 +73,7 @@ int Run(const Options& options) {
     return kRejected;
   }
   if (options.json) {
-    nlohmann::json diagnostics = nlohmann::json::array();
-    for (const diag::Diagnostic& d : session.diagnostics.Sorted())
-      diagnostics.push_back(diag::RenderJson(session.sources, d));
+    const nlohmann::json diagnostics = DiagnosticsToJson(session.sources, session.diagnostics);
     PrintJson({{"command", "project"},
                {"ok", good},
                {"types", good ? list : nlohmann::json::array()},

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "diag/render.h"
+#include "driver/terminal.h"
 
 namespace rondo::driver {
 
@@ -109,9 +110,7 @@ std::string ProveSummary(const koord::Report& report, const koord::ProveOptions&
 
 nlohmann::json ProveJson(const Session& session, const std::string& file, const koord::Report* report,
                          int status) {
-  nlohmann::json list = nlohmann::json::array();
-  for (const diag::Diagnostic& d : session.diagnostics.Sorted())
-    list.push_back(diag::RenderJson(session.sources, d));
+  const nlohmann::json list = DiagnosticsToJson(session.sources, session.diagnostics);
   nlohmann::json json{{"command", "prove"}, {"file", file}, {"status", status}, {"diagnostics", list}};
   if (report == nullptr) return json;
   json["invariants"] = nlohmann::json::array();

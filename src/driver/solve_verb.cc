@@ -105,9 +105,7 @@ int Run(const Options& options) {
     const diag::FileId file = session.sources.Add(options.files[i], std::move(text).value());
     lang::smtlib::ReadScript(session.sources, file, items[i].script, session.diagnostics);
   }
-  nlohmann::json diagnostics = nlohmann::json::array();
-  for (const diag::Diagnostic& d : session.diagnostics.Sorted())
-    diagnostics.push_back(diag::RenderJson(session.sources, d));
+  const nlohmann::json diagnostics = DiagnosticsToJson(session.sources, session.diagnostics);
   if (!readable || session.diagnostics.has_errors()) {
     if (options.json) {
       PrintJson({{"command", "solve"},

@@ -48,6 +48,12 @@ void PrintDiagnostics(const diag::SourceSet& sources, const diag::Diagnostics& d
   PrintError(text);
 }
 
+nlohmann::json DiagnosticsToJson(const diag::SourceSet& sources, const diag::Diagnostics& diagnostics) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const diag::Diagnostic& d : diagnostics.Sorted()) list.push_back(diag::RenderJson(sources, d));
+  return list;
+}
+
 void PrintFailure(const std::string& message) { PrintError(fmt::format("rondo: {}\n", message)); }
 
 ProgressLine::ProgressLine() : on_(::isatty(STDERR_FILENO) != 0) {}

@@ -21,6 +21,9 @@ diag::Colour ErrorColour();
 /// All diagnostics, sorted, to standard error, and a closing line that counts them.
 void PrintDiagnostics(const diag::SourceSet& sources, const diag::Diagnostics& diagnostics);
 
+/// All diagnostics, sorted, as `--json` shows them.
+nlohmann::json DiagnosticsToJson(const diag::SourceSet& sources, const diag::Diagnostics& diagnostics);
+
 /// `rondo: message`, for what went wrong outside any source file.
 void PrintFailure(const std::string& message);
 

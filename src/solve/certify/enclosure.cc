@@ -38,6 +38,12 @@ Enclosure Enclosure::Interval(long lo, long hi) {
   return r;
 }
 
+Enclosure Enclosure::Empty() {
+  Enclosure r;
+  r.Clear();
+  return r;
+}
+
 Enclosure Enclosure::Pi() {
   Enclosure r;
   mpfr_const_pi(r.lo_, MPFR_RNDD);
@@ -107,33 +113,24 @@ void Product(mpfr_t out, const mpfr_t a, const mpfr_t b, mpfr_rnd_t round) {
 }  // namespace
 
 Enclosure operator+(const Enclosure& a, const Enclosure& b) {
+  if (a.IsEmpty() || b.IsEmpty()) return Enclosure::Empty();
   Enclosure r;
-  if (a.IsEmpty() || b.IsEmpty()) {
-    r.Clear();
-    return r;
-  }
   mpfr_add(r.lo_, a.lo_, b.lo_, MPFR_RNDD);
   mpfr_add(r.hi_, a.hi_, b.hi_, MPFR_RNDU);
   return r;
 }
 
 Enclosure operator-(const Enclosure& a, const Enclosure& b) {
+  if (a.IsEmpty() || b.IsEmpty()) return Enclosure::Empty();
   Enclosure r;
-  if (a.IsEmpty() || b.IsEmpty()) {
-    r.Clear();
-    return r;
-  }
   mpfr_sub(r.lo_, a.lo_, b.hi_, MPFR_RNDD);
   mpfr_sub(r.hi_, a.hi_, b.lo_, MPFR_RNDU);
   return r;
 }
 
 Enclosure operator*(const Enclosure& a, const Enclosure& b) {
+  if (a.IsEmpty() || b.IsEmpty()) return Enclosure::Empty();
   Enclosure r;
-  if (a.IsEmpty() || b.IsEmpty()) {
-    r.Clear();
-    return r;
-  }
   Enclosure t;
   const auto both = [&](const mpfr_t x, const mpfr_t y, bool first) {
     Product(t.lo_, x, y, MPFR_RNDD);
@@ -153,11 +150,8 @@ Enclosure operator*(const Enclosure& a, const Enclosure& b) {
 }
 
 Enclosure operator/(const Enclosure& a, const Enclosure& b) {
+  if (a.IsEmpty() || b.IsEmpty()) return Enclosure::Empty();
   Enclosure r;
-  if (a.IsEmpty() || b.IsEmpty()) {
-    r.Clear();
-    return r;
-  }
   if (b.HasZero()) return r;
   mpfr_ui_div(r.lo_, 1, b.hi_, MPFR_RNDD);
   mpfr_ui_div(r.hi_, 1, b.lo_, MPFR_RNDU);
@@ -182,11 +176,8 @@ Enclosure Power(const Enclosure& a, unsigned n) {
 }
 
 Enclosure Root(const Enclosure& a, unsigned n) {
+  if (a.IsEmpty() || mpfr_sgn(a.hi_) < 0) return Enclosure::Empty();
   Enclosure r = a;
-  if (a.IsEmpty() || mpfr_sgn(a.hi_) < 0) {
-    r.Clear();
-    return r;
-  }
   if (mpfr_sgn(r.lo_) < 0) mpfr_set_zero(r.lo_, 1);
   mpfr_rootn_ui(r.lo_, r.lo_, n, MPFR_RNDD);
   mpfr_rootn_ui(r.hi_, r.hi_, n, MPFR_RNDU);
@@ -202,22 +193,16 @@ Enclosure Abs(const Enclosure& a) {
 }
 
 Enclosure Min(const Enclosure& a, const Enclosure& b) {
+  if (a.IsEmpty() || b.IsEmpty()) return Enclosure::Empty();
   Enclosure r = a;
-  if (a.IsEmpty() || b.IsEmpty()) {
-    r.Clear();
-    return r;
-  }
   mpfr_min(r.lo_, a.lo_, b.lo_, MPFR_RNDD);
   mpfr_min(r.hi_, a.hi_, b.hi_, MPFR_RNDU);
   return r;
 }
 
 Enclosure Max(const Enclosure& a, const Enclosure& b) {
+  if (a.IsEmpty() || b.IsEmpty()) return Enclosure::Empty();
   Enclosure r = a;
-  if (a.IsEmpty() || b.IsEmpty()) {
-    r.Clear();
-    return r;
-  }
   mpfr_max(r.lo_, a.lo_, b.lo_, MPFR_RNDD);
   mpfr_max(r.hi_, a.hi_, b.hi_, MPFR_RNDU);
   return r;
@@ -240,11 +225,8 @@ Enclosure Decreasing(const Enclosure& a, Enclosure::Monotone f) {
 }
 
 Enclosure Log(const Enclosure& a) {
+  if (a.IsEmpty() || mpfr_sgn(a.hi_) <= 0) return Enclosure::Empty();
   Enclosure r = a;
-  if (a.IsEmpty() || mpfr_sgn(a.hi_) <= 0) {
-    r.Clear();
-    return r;
-  }
   if (mpfr_sgn(r.lo_) < 0) mpfr_set_zero(r.lo_, 1);
   return Increasing(r, mpfr_log);
 }
@@ -293,11 +275,8 @@ Enclosure Tan(const Enclosure& a) {
 
 // On a box away from the cut {y = 0, x <= 0}, extrema lie in its corners.
 Enclosure Atan2(const Enclosure& y, const Enclosure& x) {
+  if (y.IsEmpty() || x.IsEmpty()) return Enclosure::Empty();
   Enclosure r;
-  if (y.IsEmpty() || x.IsEmpty()) {
-    r.Clear();
-    return r;
-  }
   if (y.HasZero() && mpfr_sgn(x.lo_) <= 0) {
     r = Enclosure::Pi();
     mpfr_neg(r.lo_, r.hi_, MPFR_RNDD);
@@ -319,9 +298,7 @@ Enclosure Atan2(const Enclosure& y, const Enclosure& x) {
 Enclosure WhereSin(const Enclosure& z, const Enclosure& x) {
   Enclosure inside = z;
   inside.Meet(Enclosure::Interval(-1, 1));
-  Enclosure none = x;
-  none.Clear();
-  if (inside.IsEmpty() || x.IsEmpty()) return none;
+  if (inside.IsEmpty() || x.IsEmpty()) return Enclosure::Empty();
   if (IsLarge(x.lo_) || IsLarge(x.hi_)) return x;
   const Enclosure base = Increasing(inside, mpfr_asin);
   const Enclosure turns = x / Enclosure::Pi() + Enclosure(expr::Rational(1) / expr::Rational(2));
@@ -335,7 +312,7 @@ Enclosure WhereSin(const Enclosure& z, const Enclosure& x) {
   };
   // Pieces in the middle of `x` hold a solution each: only those at its ends are of interest.
   constexpr long kEndPieces = 4;
-  Enclosure r = none;
+  Enclosure r = Enclosure::Empty();
   for (long k = first; k <= last; ++k) {
     if (k == first + kEndPieces && last - first > 2 * kEndPieces) k = last - kEndPieces;
     r.Join(piece(k));
@@ -344,9 +321,7 @@ Enclosure WhereSin(const Enclosure& z, const Enclosure& x) {
 }
 
 Enclosure WhereTimes(const Enclosure& z, const Enclosure& b, const Enclosure& a) {
-  Enclosure none = a;
-  none.Clear();
-  if (z.IsEmpty() || a.IsEmpty() || b.IsEmpty()) return none;
+  if (z.IsEmpty() || a.IsEmpty() || b.IsEmpty()) return Enclosure::Empty();
   Enclosure r = a;
   if (!b.HasZero()) {
     r.Meet(z / b);
@@ -365,7 +340,7 @@ Enclosure WhereTimes(const Enclosure& z, const Enclosure& b, const Enclosure& a)
     part.Meet(a);
     return part;
   };
-  r = none;
+  r = Enclosure::Empty();
   if (mpfr_sgn(b.hi_) > 0) r.Join(side(b.hi_, true));
   if (mpfr_sgn(b.lo_) < 0) r.Join(side(b.lo_, false));
   return r;
@@ -377,8 +352,7 @@ Enclosure WherePower(const Enclosure& z, unsigned n, const Enclosure& a) {
   Enclosure down = zero - (n % 2 == 0 ? up : Root(zero - z, n));
   up.Meet(a);
   down.Meet(a);
-  Enclosure r = a;
-  r.Clear();
+  Enclosure r = Enclosure::Empty();
   r.Join(up);
   r.Join(down);
   return r;

@@ -68,6 +68,7 @@ class Enclosure {
 
   static Enclosure Interval(long lo, long hi);
   static Enclosure Pi();
+  static Enclosure Empty();
 
  private:
   // The digits lie beside the numbers: nothing is allocated.

@@ -43,8 +43,7 @@ Enclosure Propagator::Evaluate(const Node& n) const {
     case Kind::kPow:
       return Power(a, n.n);
     case Kind::kChoose: {
-      Enclosure r = a;
-      r.Clear();
+      Enclosure r = Enclosure::Empty();
       if (MayHold(conditions_[n.n][0])) r.Join(a);
       if (MayHold(conditions_[n.n][1])) r.Join(b);
       return r;

@@ -28,7 +28,11 @@ bool IsNumber(NodeOp op) { return op < NodeOp::kThreshold; }
 }  // namespace
 
 InfluenceMeter::InfluenceMeter(const Tape& tape, const interval::Kernels& kernels)
-    : tape_(tape), k_(kernels), adjoints_(tape.nodes.size()) {
+    : tape_(tape),
+      k_(kernels),
+      adjoints_(tape.nodes.size()),
+      slopes_(tape.nodes.size()),
+      known_(tape.nodes.size()) {
   std::vector<char> inside(tape.nodes.size());
   std::map<uint32_t, size_t> cone_of;
   for (size_t t = 0; t < tape.thresholds.size(); ++t) {
@@ -58,6 +62,7 @@ InfluenceMeter::InfluenceMeter(const Tape& tape, const interval::Kernels& kernel
 
 void InfluenceMeter::Measure(const std::vector<Batch>& values, const std::vector<Lanes>& open,
                              std::vector<double>& scores) {
+  ++round_;
   scores.assign(tape_.variables.size() * kLanes, 0.0);
   std::array<double, kLanes> sums{};
   for (size_t c = 0; c < cones_.size(); ++c) {
@@ -105,6 +110,7 @@ bool InfluenceMeter::Gradient(uint32_t node, const std::vector<Batch>& values,
         break;
     }
   }
+  ++round_;
   Derive(*cone, values);
   gradient.assign(tape_.variables.size(), interval::Interval::Point(0));
   for (const uint32_t v : cone->variables) {
@@ -122,6 +128,48 @@ void InfluenceMeter::Derive(const Cone& cone, const std::vector<Batch>& values) 
     const Node& n = tape_.nodes[i];
     if (IsNumber(n.op) && n.op != NodeOp::kVariable && n.op != NodeOp::kConstant) Pass(n, i, values);
   }
+}
+
+// The derivative of a function of one argument; every comparison above it needs the same.
+const Batch& InfluenceMeter::Slope(const Node& n, uint32_t i, const std::vector<Batch>& values) {
+  Batch& d = slopes_[i];
+  if (known_[i] == round_) return d;
+  known_[i] = round_;
+  const Batch& a = values[n.a];
+  switch (n.op) {
+    case NodeOp::kSqr:
+      k_.add(a, a, d);
+      break;
+    case NodeOp::kPow:
+      k_.pow(a, static_cast<int>(n.n) - 1, d);
+      k_.mul(d, Constant(n.n), d);
+      break;
+    case NodeOp::kSqrt:
+      k_.div(Constant(0.5), values[i], d);
+      break;
+    case NodeOp::kSin:
+      k_.cos(a, d);
+      break;
+    case NodeOp::kCos:
+      k_.sin(a, d);
+      k_.neg(d, d);
+      break;
+    case NodeOp::kLog:
+      k_.div(Constant(1), a, d);
+      break;
+    case NodeOp::kAtan:
+      k_.sqr(a, d);
+      k_.add(d, Constant(1), d);
+      k_.div(Constant(1), d, d);
+      break;
+    case NodeOp::kTan:
+      k_.sqr(values[i], d);
+      k_.add(d, Constant(1), d);
+      break;
+    default:  // kExp
+      d = values[i];
+  }
+  return d;
 }
 
 // Adds what the derivative of node `i` means for its arguments.
@@ -167,44 +215,15 @@ void InfluenceMeter::Pass(const Node& n, uint32_t i, const std::vector<Batch>& v
       times(n.b, e);
       return;
     case NodeOp::kSqr:
-      k_.add(a, a, d);
-      times(n.a, d);
-      return;
     case NodeOp::kPow:
-      k_.pow(a, static_cast<int>(n.n) - 1, d);
-      k_.mul(d, Constant(n.n), d);
-      times(n.a, d);
-      return;
     case NodeOp::kSqrt:
-      k_.div(Constant(0.5), values[i], d);
-      times(n.a, d);
-      return;
     case NodeOp::kSin:
-      k_.cos(a, d);
-      times(n.a, d);
-      return;
     case NodeOp::kCos:
-      k_.sin(a, d);
-      k_.neg(d, d);
-      times(n.a, d);
-      return;
     case NodeOp::kExp:
-      times(n.a, values[i]);
-      return;
     case NodeOp::kLog:
-      k_.div(Constant(1), a, d);
-      times(n.a, d);
-      return;
     case NodeOp::kAtan:
-      k_.sqr(a, d);
-      k_.add(d, Constant(1), d);
-      k_.div(Constant(1), d, d);
-      times(n.a, d);
-      return;
     case NodeOp::kTan:
-      k_.sqr(values[i], d);
-      k_.add(d, Constant(1), d);
-      times(n.a, d);
+      times(n.a, Slope(n, i, values));
       return;
     case NodeOp::kMin:
     case NodeOp::kMax:

@@ -40,11 +40,15 @@ class InfluenceMeter {
 
   void Derive(const Cone& cone, const std::vector<interval::Batch>& values);
   void Pass(const Node& node, uint32_t id, const std::vector<interval::Batch>& values);
+  const interval::Batch& Slope(const Node& node, uint32_t id, const std::vector<interval::Batch>& values);
 
   const Tape& tape_;
   const interval::Kernels& k_;
   std::vector<Cone> cones_;
   std::vector<interval::Batch> adjoints_;
+  std::vector<interval::Batch> slopes_;
+  std::vector<uint64_t> known_;  // in which round the slope was computed
+  uint64_t round_ = 0;
   std::vector<double> parts_;
 };
 
