@@ -301,7 +301,7 @@ class Lowering {
   }
 
   std::optional<Quantity> Time(ExprId e, const Environment& environment, Span call) {
-    const auto value = Constant(pool_, e, environment);
+    auto value = Constant(pool_, e, environment);
     const bool zero = value && value->value.IsZero() && value->dimension == lang::Dimension{};
     if (value && (zero || value->dimension == lang::Dimension{0, 1, 0})) return value;
     auto& report =

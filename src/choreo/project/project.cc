@@ -212,7 +212,7 @@ class Projection {
     for (int steps = 0; s != 0; s = ways_[s].from) {
       if (!ways_[s].action) continue;
       if (++steps > kMostSteps) return "..., " + text;
-      text = Describe(graph_, *ways_[s].action) + (text.empty() ? "" : ", ") + text;
+      text = fmt::format("{}{}{}", Describe(graph_, *ways_[s].action), text.empty() ? "" : ", ", text);
     }
     return text;
   }

@@ -30,7 +30,7 @@ Verifier::Verifier(Lowered& lowered, const Prepared& prepared, const Tape& tape,
   for (const auto& [term, range] : prepared.ranges) {
     for (const Literal& literal : range.Literals(term)) {
       if (literal.relation == kEqual) {
-        ++equations_;
+        equations_.push_back(term);
       } else {
         others_.push_back(ToFormula(arena_, literal));
       }
@@ -94,7 +94,7 @@ std::optional<Solution> Verifier::AtPoint(const std::vector<double>& point) {
 
 // The equations hold somewhere in a small box, and all else holds everywhere in it.
 std::optional<Solution> Verifier::NearPoint(const std::vector<double>& point) {
-  if (existence_.equations() != equations_) return std::nullopt;
+  if (existence_.equations() != equations_.size()) return std::nullopt;
   const auto box = existence_.Around(point);
   if (!box) return std::nullopt;
   Solution solution{Values(point), false};
@@ -104,6 +104,10 @@ std::optional<Solution> Verifier::NearPoint(const std::vector<double>& point) {
     around.Widen(tape_.variables[v].term, {(*box)[2 * v], (*box)[2 * v + 1]});
   for (const TermId f : others_) {
     if (around.Check(f) != Truth::kTrue) return std::nullopt;
+  }
+  // The equations must be defined throughout the box.
+  for (const TermId e : equations_) {
+    if (around.Enclosure(e).IsEmpty()) return std::nullopt;
   }
   if (!Complete(around, solution.values)) return std::nullopt;
   return solution;

@@ -31,9 +31,9 @@ class Verifier {
   const Prepared& prepared_;
   const Tape& tape_;
   Existence existence_;
-  std::vector<TermId> formulas_;  // the conjuncts
-  std::vector<TermId> others_;    // those that are no equations
-  size_t equations_ = 0;
+  std::vector<TermId> formulas_;   // the conjuncts
+  std::vector<TermId> others_;     // those that are no equations
+  std::vector<TermId> equations_;  // their terms
 };
 
 }  // namespace rondo::solve::icp
