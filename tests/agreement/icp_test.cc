@@ -317,6 +317,8 @@ INSTANTIATE_TEST_SUITE_P(
               "(assert (and (< 0 (* x x)) (> z 0) (> c 0)))(assert (= d (+ c 1.0)))",
               "sat"},
         Known{"z3 #6947", "(assert (< x 0))(assert (= (* x x) 2))", "sat"},
+        Known{"z3 #7114",
+              "(assert (< 0 x))(assert (= (- y) (* x (+ x y))))(assert (= 1 (+ (* x x) (* y y))))", "sat"},
         Known{"z3 #9139: a quotient of equals",
               "(declare-fun k () Int)"
               "(assert (= (to_real k) (- (/ (/ (+ 3 x) (+ (- (- 3)) 2)) (/ (+ 3 x) (+ (- (- 3)) 2))) x)))"
