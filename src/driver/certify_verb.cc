@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
 #include "driver/load.h"
@@ -22,18 +21,11 @@ struct Options {
   bool json = false;
 };
 
-std::optional<diag::FileId> Read(const std::string& path, Session& session) {
-  auto text = base::ReadFile(path);
-  if (text.ok()) return session.sources.Add(path, std::move(text).value());
-  PrintFailure(fmt::format("cannot read `{}`: {}", path, text.error().message));
-  return std::nullopt;
-}
-
 int Run(const Options& options) {
   Session session;
   std::vector<std::string> questions;
   if (!options.script.empty()) {
-    const auto file = Read(options.script, session);
+    const auto file = ReadSource(options.script, session);
     if (!file) return kRejected;
     lang::smtlib::Script script;
     lang::smtlib::ReadScript(session.sources, *file, script, session.diagnostics);
@@ -46,7 +38,7 @@ int Run(const Options& options) {
   bool readable = true;
   bool stopped = false;
   for (const std::string& path : options.files) {
-    const auto file = Read(path, session);
+    const auto file = ReadSource(path, session);
     readable = readable && file;
     if (!file) continue;
     const size_t before = session.diagnostics.errors();

@@ -9,17 +9,19 @@
 #include "koord/syntax/parser.h"
 
 namespace rondo::driver {
+std::optional<diag::FileId> ReadSource(const std::string& path, Session& session) {
+  auto text = base::ReadFile(path);
+  if (text.ok()) return session.sources.Add(path, std::move(text).value());
+  PrintFailure(fmt::format("cannot read `{}`: {}", path, text.error().message));
+  return std::nullopt;
+}
+
 namespace {
 
 bool ParseFile(const std::string& path, Session& session, koord::Program& program) {
-  auto text = base::ReadFile(path);
-  if (!text.ok()) {
-    PrintFailure(fmt::format("cannot read `{}`: {}", path, text.error().message));
-    return false;
-  }
-  const diag::FileId file = session.sources.Add(path, std::move(text).value());
-  koord::Parse(session.sources, file, program, session.diagnostics);
-  return true;
+  const auto file = ReadSource(path, session);
+  if (file) koord::Parse(session.sources, *file, program, session.diagnostics);
+  return file.has_value();
 }
 
 }  // namespace

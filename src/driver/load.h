@@ -14,6 +14,9 @@ struct Session {
   diag::Diagnostics diagnostics;
 };
 
+/// Adds a file to the sources; nothing, after a message, when it cannot be read.
+std::optional<diag::FileId> ReadSource(const std::string& path, Session& session);
+
 struct LoadOptions {
   std::string file;
   std::string spec;  ///< a specification; empty: the file beside the program with the extension `.spec`, if

@@ -1,26 +1,18 @@
 #include "driver/motion.h"
 
-#include <fmt/format.h>
-
-#include "base/file.h"
 #include "choreo/graph/lower.h"
 #include "choreo/project/project.h"
 #include "choreo/syntax/parser.h"
 #include "choreo/wellformed/wellformed.h"
-#include "driver/terminal.h"
 
 namespace rondo::driver {
 
 std::unique_ptr<Motion> LoadMotion(const std::string& file, Session& session) {
-  auto text = base::ReadFile(file);
-  if (!text.ok()) {
-    PrintFailure(fmt::format("cannot read `{}`: {}", file, text.error().message));
-    return nullptr;
-  }
+  const auto source = ReadSource(file, session);
+  if (!source) return nullptr;
   auto motion = std::make_unique<Motion>();
   const size_t errors = session.diagnostics.errors();
-  choreo::Parse(session.sources, session.sources.Add(file, std::move(text).value()), motion->module,
-                session.diagnostics);
+  choreo::Parse(session.sources, *source, motion->module, session.diagnostics);
   if (session.diagnostics.errors() == errors)
     motion->graphs = choreo::Lower(motion->module, session.diagnostics);
   return motion;

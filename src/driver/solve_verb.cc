@@ -96,14 +96,9 @@ int Run(const Options& options) {
   bool readable = true;
   for (size_t i = 0; i < items.size(); ++i) {
     items[i].path = options.files[i];
-    auto text = base::ReadFile(options.files[i]);
-    if (!text.ok()) {
-      PrintFailure(fmt::format("cannot read `{}`: {}", options.files[i], text.error().message));
-      readable = false;
-      continue;
-    }
-    const diag::FileId file = session.sources.Add(options.files[i], std::move(text).value());
-    lang::smtlib::ReadScript(session.sources, file, items[i].script, session.diagnostics);
+    const auto file = ReadSource(options.files[i], session);
+    readable = readable && file;
+    if (file) lang::smtlib::ReadScript(session.sources, *file, items[i].script, session.diagnostics);
   }
   const nlohmann::json diagnostics = DiagnosticsToJson(session.sources, session.diagnostics);
   if (!readable || session.diagnostics.has_errors()) {

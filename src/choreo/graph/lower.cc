@@ -94,10 +94,8 @@ class Lowering {
                             fmt::format("`{}` is declared twice", c.name.text));
       everybody.insert(id);
     }
-    Node end;
-    end.scope = everybody;
-    end.span = source.span;
-    graph_.start = Statements(source.body, Add(std::move(end)), everybody);
+    const NodeId end = Add(Make(NodeKind::kEnd, source.span, everybody));
+    graph_.start = Statements(source.body, end, everybody);
     if (diagnostics_.errors() > errors) return std::nullopt;
     return std::move(graph_);
   }
@@ -108,13 +106,15 @@ class Lowering {
     return NodeId(graph_.nodes.size() - 1);
   }
 
-  NodeId AddMerge(Span span, const Scope& scope) {
-    Node merge;
-    merge.kind = NodeKind::kMerge;
-    merge.span = span;
-    merge.scope = scope;
-    return Add(std::move(merge));
+  static Node Make(NodeKind kind, Span span, const Scope& scope) {
+    Node node;
+    node.kind = kind;
+    node.span = span;
+    node.scope = scope;
+    return node;
   }
+
+  NodeId AddMerge(Span span, const Scope& scope) { return Add(Make(NodeKind::kMerge, span, scope)); }
 
   // From the last statement to the first: each knows where it goes on.
   NodeId Statements(const std::vector<Stmt>& body, NodeId next, const Scope& scope) {
@@ -175,10 +175,7 @@ class Lowering {
   }
 
   NodeId Message(const Stmt& s, NodeId next, const Scope& scope) {
-    Node node;
-    node.kind = NodeKind::kMessage;
-    node.span = s.span;
-    node.scope = scope;
+    Node node = Make(NodeKind::kMessage, s.span, scope);
     node.from = Robot(s.from, scope);
     node.to = Robot(s.to, scope);
     node.label = s.label.text;
@@ -190,10 +187,7 @@ class Lowering {
   }
 
   NodeId Motion(const Stmt& s, NodeId next, const Scope& scope) {
-    Node node;
-    node.kind = NodeKind::kMotion;
-    node.span = s.span;
-    node.scope = scope;
+    Node node = Make(NodeKind::kMotion, s.span, scope);
     Scope missing = scope;
     for (const MotionCall& call : s.motions) {
       const RobotId robot = Robot(call.robot, scope);
@@ -367,15 +361,9 @@ class Lowering {
   }
 
   NodeId Parallel(const Stmt& s, NodeId next, const Scope& scope) {
-    Node join;
-    join.kind = NodeKind::kJoin;
-    join.span = s.span;
-    join.scope = scope;
+    Node join = Make(NodeKind::kJoin, s.span, scope);
     join.next = {next};
-    Node fork;
-    fork.kind = NodeKind::kFork;
-    fork.span = s.span;
-    fork.scope = scope;
+    Node fork = Make(NodeKind::kFork, s.span, scope);
     fork.threads = Threads(s, scope);
     fork.threads_of = &s;
     fork.join = Add(std::move(join));
@@ -389,10 +377,7 @@ class Lowering {
   }
 
   NodeId Choose(const Stmt& s, NodeId next, const Scope& scope) {
-    Node choice;
-    choice.kind = NodeKind::kChoice;
-    choice.span = s.span;
-    choice.scope = scope;
+    Node choice = Make(NodeKind::kChoice, s.span, scope);
     choice.chooser = Robot(s.chooser, scope);
     const NodeId merge = AddMerge(s.span, scope);
     SetNext(merge, next);
@@ -406,10 +391,7 @@ class Lowering {
 
   NodeId While(const Stmt& s, NodeId next, const Scope& scope) {
     const NodeId head = AddMerge(s.span, scope);
-    Node choice;
-    choice.kind = NodeKind::kChoice;
-    choice.span = s.span;
-    choice.scope = scope;
+    Node choice = Make(NodeKind::kChoice, s.span, scope);
     const std::map<RobotId, Span> owners = Owners(s.guard);
     if (owners.empty()) {
       diagnostics_

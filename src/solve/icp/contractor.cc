@@ -35,9 +35,7 @@ Contractor::Contractor(const Tape& tape, const interval::Kernels& kernels)
       values_(tape.nodes.size()),
       possible_(tape.nodes.size()),
       needed_(tape.nodes.size()),
-      comparisons_(tape.thresholds.size()),
-      influence_(tape, kernels),
-      open_(tape.thresholds.size()) {
+      comparisons_(tape.thresholds.size()) {
   for (size_t i = 0; i < tape.nodes.size(); ++i) {
     for (int l = 0; l < kLanes; ++l) {
       values_[i].nl[l] = -tape.constants[i].lo;
@@ -83,13 +81,13 @@ Lanes Contractor::Evaluate() {
   return possible_[tape_.root];
 }
 
-void Contractor::Influence(std::vector<double>& scores) {
+void Contractor::Open(std::vector<Lanes>& open) const {
+  open.resize(comparisons_.size());
   for (size_t t = 0; t < comparisons_.size(); ++t) {
     const Comparison& c = comparisons_[t];
     // An inequality that is not decided; of an equation, only equality is left.
-    open_[t] = static_cast<Lanes>((c.equal & (c.less | c.greater)) | (c.equal & ~c.less & ~c.greater));
+    open[t] = static_cast<Lanes>((c.equal & (c.less | c.greater)) | (c.equal & ~c.less & ~c.greater));
   }
-  influence_.Measure(values_, open_, scores);
 }
 
 Lanes Contractor::Impossible() const {
@@ -322,9 +320,7 @@ void Contractor::BackwardNumber(uint32_t i) {
   if (n.op == NodeOp::kVariable || n.op == NodeOp::kConstant) return;
   if (n.op == NodeOp::kChoose) return RequireChoice(i);
   const Lanes need = needed_[i];
-  const bool binary = n.op == NodeOp::kAdd || n.op == NodeOp::kSub || n.op == NodeOp::kMul ||
-                      n.op == NodeOp::kDiv || n.op == NodeOp::kMin || n.op == NodeOp::kMax ||
-                      n.op == NodeOp::kAtan2;
+  const bool binary = IsBinary(n.op);
   const Batch& z = values_[i];
   // Constants stay what they are for the boxes to come.
   Batch constant_a, constant_b;

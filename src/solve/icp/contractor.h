@@ -26,8 +26,8 @@ class Contractor {
   Lanes Contract(int sweeps);
   /// Encloses all values and says in which lanes the formula is possible. Contracts nothing.
   Lanes Evaluate();
-  /// After Contract: how much each variable can change what is undecided; see InfluenceMeter.
-  void Influence(std::vector<double>& scores);
+  /// After Contract: by threshold, the lanes in which it is undecided; see InfluenceMeter.
+  void Open(std::vector<Lanes>& open) const;
 
   /// Enclosures of the nodes.
   const std::vector<interval::Batch>& values() const { return values_; }
@@ -55,8 +55,6 @@ class Contractor {
   std::vector<Lanes> possible_;          ///< formulas: not refuted
   std::vector<Lanes> needed_;  ///< formulas: must be true; numbers: must exist for the formula to be true
   std::vector<Comparison> comparisons_;
-  InfluenceMeter influence_;
-  std::vector<Lanes> open_;
   bool again_ = false;  ///< meet new enclosures with those of the sweep before
 };
 

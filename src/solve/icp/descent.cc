@@ -57,7 +57,7 @@ void Descent::Evaluate() {
   for (size_t i = 0; i < tape_.nodes.size(); ++i) {
     const Node& n = tape_.nodes[i];
     if (n.op == NodeOp::kConstant) values_[i] = tape_.constants[i].Middle();
-    if (n.op > NodeOp::kConstant && n.op < NodeOp::kThreshold) values_[i] = Value(n);
+    if (IsComposite(n.op)) values_[i] = Value(n);
   }
 }
 
@@ -195,7 +195,7 @@ void Descent::Differentiate(uint32_t node) {
   adjoints_[node] = 1;
   for (uint32_t i = node + 1; i-- > 0;) {
     const Node& n = tape_.nodes[i];
-    if (adjoints_[i] != 0 && n.op > NodeOp::kConstant && n.op < NodeOp::kThreshold) Pass(n, i);
+    if (adjoints_[i] != 0 && IsComposite(n.op)) Pass(n, i);
   }
 }
 

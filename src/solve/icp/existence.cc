@@ -7,8 +7,7 @@ namespace rondo::solve::icp {
 
 using interval::Interval;
 
-Existence::Existence(const Tape& tape, const interval::Kernels& kernels)
-    : tape_(tape), contractor_(tape, kernels), meter_(tape, kernels) {
+Existence::Existence(const Tape& tape, const interval::Kernels& kernels) : tape_(tape), kernels_(kernels) {
   const Node& root = tape.nodes[tape.root];
   if (root.op != NodeOp::kAnd) return;
   for (uint32_t c = root.a; c < root.a + root.n; ++c) {
@@ -21,17 +20,17 @@ Existence::Existence(const Tape& tape, const interval::Kernels& kernels)
 
 // Residuals and derivatives of the equations over a box. False: not differentiable, or not defined.
 bool Existence::Linearise(const std::vector<double>& box) {
-  for (int l = 0; l < kLanes; ++l) contractor_.Load(l, box.data());
-  contractor_.Evaluate();
+  for (int l = 0; l < kLanes; ++l) contractor_->Load(l, box.data());
+  contractor_->Evaluate();
   residuals_.clear();
   slopes_.assign(equations_.size(), {});
   for (size_t e = 0; e < equations_.size(); ++e) {
     const Threshold& t = tape_.thresholds[equations_[e]];
     const uint32_t node = tape_.nodes[t.node].a;
-    const Interval value = contractor_.ValueOf(node, 0);
+    const Interval value = contractor_->ValueOf(node, 0);
     if (value.IsEmpty()) return false;
     residuals_.push_back(value - Interval{t.below, t.above});
-    if (!meter_.Gradient(node, contractor_.values(), slopes_[e])) return false;
+    if (!meter_->Gradient(node, contractor_->values(), slopes_[e])) return false;
   }
   return true;
 }
@@ -39,6 +38,10 @@ bool Existence::Linearise(const std::vector<double>& box) {
 std::optional<std::vector<double>> Existence::Around(const std::vector<double>& point) {
   const size_t columns = point.size();
   if (equations_.empty() || equations_.size() > columns) return std::nullopt;
+  if (!contractor_) {
+    contractor_.emplace(tape_, kernels_);
+    meter_.emplace(tape_, kernels_);
+  }
   for (const double radius : {1e-12, 1e-10, 1e-8, 1e-6, 1e-4}) {
     if (auto box = Prove(point, radius)) return box;
   }

@@ -23,8 +23,9 @@ class Existence {
   std::optional<std::vector<double>> Prove(const std::vector<double>& point, double radius);
 
   const Tape& tape_;
-  Contractor contractor_;
-  InfluenceMeter meter_;
+  const interval::Kernels& kernels_;
+  std::optional<Contractor> contractor_;  // made when they are needed
+  std::optional<InfluenceMeter> meter_;
   std::vector<uint32_t> equations_;                      // thresholds
   std::vector<interval::Interval> residuals_;            // of the equations, over the last box
   std::vector<std::vector<interval::Interval>> slopes_;  // by equation and variable

@@ -23,8 +23,6 @@ double Magnitude(const Batch& b, int l) {
   return m < 1e9 ? m : 1e9;
 }
 
-bool IsNumber(NodeOp op) { return op < NodeOp::kThreshold; }
-
 }  // namespace
 
 InfluenceMeter::InfluenceMeter(const Tape& tape, const interval::Kernels& kernels)
@@ -50,7 +48,7 @@ InfluenceMeter::InfluenceMeter(const Tape& tape, const interval::Kernels& kernel
       if (inside[i] == 0) continue;
       const Node& n = tape.nodes[i];
       cone.nodes.push_back(i);
-      if (n.op == NodeOp::kVariable || n.op == NodeOp::kConstant) continue;
+      if (!IsComposite(n.op)) continue;
       inside[n.a] = 1;
       if (IsBinary(n.op)) inside[n.b] = 1;
     }
@@ -126,7 +124,7 @@ void InfluenceMeter::Derive(const Cone& cone, const std::vector<Batch>& values) 
   adjoints_[cone.root] = Constant(1);
   for (const uint32_t i : cone.nodes) {
     const Node& n = tape_.nodes[i];
-    if (IsNumber(n.op) && n.op != NodeOp::kVariable && n.op != NodeOp::kConstant) Pass(n, i, values);
+    if (IsComposite(n.op)) Pass(n, i, values);
   }
 }
 

@@ -140,6 +140,7 @@ class Worker {
         threads_(threads),
         contractor_(tape_, *shared.options.kernels),
         points_(tape_, *shared.options.kernels),
+        meter_(tape_, *shared.options.kernels),
         box_(2 * count_) {
     bool multiple = false;
     for (const TapeVariable& v : tape_.variables) multiple = multiple || !v.single;
@@ -195,7 +196,8 @@ class Worker {
     const auto alive = static_cast<Lanes>(contractor_.Contract(kSweeps) & used);
     if (alive == 0) return;
     if ((steps_ < 256 || steps_ % 8 == 0) && Probe(alive)) return;
-    contractor_.Influence(scores_);
+    contractor_.Open(open_);
+    meter_.Measure(contractor_.values(), open_, scores_);
     for (int l = 0; l < kLanes; ++l) {
       if ((alive >> l & 1) == 0) continue;
       contractor_.Store(l, box_.data());
@@ -311,6 +313,8 @@ class Worker {
   size_t count_;
   unsigned threads_;
   Contractor contractor_, points_;
+  InfluenceMeter meter_;
+  std::vector<Lanes> open_;
   FlatBox box_;
   std::vector<bool> branchable_;
   std::vector<double> scores_;

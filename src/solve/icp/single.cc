@@ -15,13 +15,11 @@ struct Uses {
   std::vector<uint32_t> last;  // one node that uses it
 };
 
-bool IsNumber(NodeOp op) { return op < NodeOp::kThreshold; }
-
 Uses Count(const Tape& tape) {
   Uses uses{std::vector<uint32_t>(tape.nodes.size()), std::vector<uint32_t>(tape.nodes.size())};
   for (uint32_t i = 0; i < tape.nodes.size(); ++i) {
     const Node& n = tape.nodes[i];
-    if (!IsNumber(n.op) || n.op == NodeOp::kVariable || n.op == NodeOp::kConstant) continue;
+    if (!IsComposite(n.op)) continue;
     ++uses.count[n.a];
     uses.last[n.a] = i;
     if (!IsBinary(n.op)) continue;
@@ -51,7 +49,7 @@ std::vector<char> Dependent(const Tape& tape, const std::vector<char>& wanted) {
     const Node& n = tape.nodes[i];
     if (n.op == NodeOp::kVariable) {
       result[i] = wanted[n.a];
-    } else if (IsNumber(n.op) && n.op != NodeOp::kConstant) {
+    } else if (IsComposite(n.op)) {
       result[i] = result[n.a] != 0 || (IsBinary(n.op) && result[n.b] != 0) ? 1 : 0;
     }
   }

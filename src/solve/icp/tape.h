@@ -79,7 +79,9 @@ struct Tape {
   bool partial = false;  ///< does a function occur that is not defined everywhere?
 };
 
-/// Is the node made of two numbers?
+/// Is the node a number that is made of others?
+inline bool IsComposite(NodeOp op) { return op > NodeOp::kConstant && op < NodeOp::kThreshold; }
+/// Of two others?
 bool IsBinary(NodeOp op);
 
 /// Marks the variables that need not be split: those used once, in a number that is used once, and so on, for
