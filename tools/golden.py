@@ -3,7 +3,7 @@
 
 A case is src/<folder>/testdata/<topic>/<case>.koord (or .rondo, or .smt2, where comments begin with `;`). Its first line may be
 `# ARGS: prove ...` (default: check, or solve). Below each line of the program stand the diagnostics that concern it, as
-comments `#? kind[:column]: message`; those about no place stand at the end. With `OUTPUT` in the first line, the whole
+comments `#? kind[:column]: message`; those about no place, or about imported files, stand at the end. With `OUTPUT` in the first line, the whole
 output for people stands at the end in lines `#> `.
 A case whose name starts with `fail_` must end with a status other than 0, any other with 0.
 
@@ -58,8 +58,9 @@ def expected(rondo, path, source_lines):
         to_source[number] = count
     notes = {}
     for d in diagnostics:
-        line = to_source.get(d["line"], 0) if "line" in d else len(source_lines)
-        column = f":{d['column']}" if "column" in d else ""
+        here = d.get("file") == str(relative)
+        line = to_source.get(d["line"], 0) if here else len(source_lines)
+        column = f":{d['column']}" if here else f":{pathlib.Path(d['file']).name}" if "file" in d else ""
         notes.setdefault(line, []).append(f"{mark}? {d['kind']}{column}: {d['message']}")
     result = []
     for number, line in enumerate(source_lines, 1):

@@ -27,6 +27,11 @@ enum class Kind : uint8_t {
   kSmtUnsupported,
   // Certificates.
   kCertificateRejected,
+  // Robots and worlds.
+  kRobotUnit,
+  kRobotType,
+  kRobotRange,
+  kRobotMount,
   // Choreographies.
   kChoreoUndeclared,
   kChoreoDuplicate,
@@ -51,6 +56,20 @@ enum class Kind : uint8_t {
   kChoreoUnguarded,
   kChoreoZeno,
   kChoreoUnmergeable,
+  kChoreoCoupled,
+  kChoreoEquation,
+  kChoreoPrecedence,
+  kChoreoImport,
+  // Processes.
+  kProcessStep,
+  kProcessPeer,
+  kProcessLabel,
+  kProcessCase,
+  kProcessPayload,
+  kProcessMotion,
+  kProcessArgument,
+  kProcessGuard,
+  kProcessOpen,
   // Koord: names.
   kKoordUndeclared,
   kKoordDuplicate,

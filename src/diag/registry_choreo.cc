@@ -3,6 +3,7 @@
 // Two robots of one type, for the examples.
 #define TEAM                                       \
   "robot R {\n"                                    \
+  "  state x : length in [-1 m, 1 m]\n"            \
   "  motion Idle() interruptible [0 s, inf) {}\n"  \
   "  motion Go() noninterruptible [2 s, 2 s] {}\n" \
   "}\n"                                            \
@@ -27,7 +28,8 @@ constexpr KindInfo kTable[] = {
      "How long a motion takes is `[least, most]`, in units of time: literal numbers, parameters and "
      "arguments. The "
      "rules for\nsynchronisation need to know it.",
-     "robot R {\n  motion Go(d) noninterruptible [d, d] {}\n}\nworld W { a: R }\n"
+     "robot R {\n  state x : length in [-1 m, 1 m]\n  motion Go(d) noninterruptible [d, d] {}\n}\nworld W { "
+     "a: R }\n"
      "choreography C in W { a: Go(5 m) }\n",
      "check"},
     {Kind::kChoreoOutOfScope, "choreo-out-of-scope", Severity::kError,
@@ -58,8 +60,8 @@ constexpr KindInfo kTable[] = {
     {Kind::kChoreoGuardOwner, "choreo-guard-owner", Severity::kError,
      "a guard that the robot which decides cannot see",
      "The robot that chooses knows its own state and what it was told, nothing else.",
-     TEAM "choreography C in W {\n  choose at a {\n    when b.ready { a -> b: yes() }\n"
-          "    when not a.ready { a -> b: no() }\n  }\n}\n",
+     TEAM "choreography C in W {\n  choose at a {\n    when b.x > 0 m { a -> b: yes() }\n"
+          "    when not a.x > 0 m { a -> b: no() }\n  }\n}\n",
      "check"},
     {Kind::kChoreoUnreachable, "choreo-unreachable", Severity::kWarning, "a step that is never reached",
      "A `loop` has no end, and `continue` goes elsewhere: what follows in the same block never happens.",
@@ -82,7 +84,8 @@ constexpr KindInfo kTable[] = {
      "Behind a motion there must be one first message. A later one comes from a robot that has taken part in "
      "a message "
      "since:\nelse its receiver cannot know which of the two to expect (unique minimal communication).",
-     "robot R {\n  motion Idle() interruptible [0 s, inf) {}\n}\nworld W { a: R b: R c: R }\n"
+     "robot R {\n  state x : length in [-1 m, 1 m]\n  motion Idle() interruptible [0 s, inf) {}\n}\nworld W "
+     "{ a: R b: R c: R }\n"
      "choreography C in W {\n  { a: Idle(), b: Idle(), c: Idle() }\n  a -> b: one()\n  c -> b: two()\n}\n",
      "check"},
     {Kind::kChoreoNotReady, "choreo-not-ready", Severity::kError, "a message while another robot cannot stop",
@@ -99,7 +102,8 @@ constexpr KindInfo kTable[] = {
     {Kind::kChoreoNotInformed, "choreo-not-informed", Severity::kError,
      "a robot that is not told of a change of motion",
      "Between two motions each robot of the first takes part in a message (total synchronisation).",
-     "robot R {\n  motion Idle() interruptible [0 s, inf) {}\n}\nworld W { a: R b: R c: R }\n"
+     "robot R {\n  state x : length in [-1 m, 1 m]\n  motion Idle() interruptible [0 s, inf) {}\n}\nworld W "
+     "{ a: R b: R c: R }\n"
      "choreography C in W {\n  { a: Idle(), b: Idle(), c: Idle() }\n  a -> b: go()\n  { a: Idle(), b: "
      "Idle(), c: Idle() }\n}\n",
      "check"},
@@ -112,7 +116,8 @@ constexpr KindInfo kTable[] = {
     {Kind::kChoreoDurationOutside, "choreo-duration-outside", Severity::kError,
      "motions of one step whose durations do not fit",
      "The motion that cannot be interrupted ends while all others may: its duration lies within theirs.",
-     "robot R {\n  motion Wait() interruptible [0 s, 1 s] {}\n  motion Go() noninterruptible [2 s, 2 s] "
+     "robot R {\n  state x : length in [-1 m, 1 m]\n  motion Wait() interruptible [0 s, 1 s] {}\n  motion "
+     "Go() noninterruptible [2 s, 2 s] "
      "{}\n}\n"
      "world W { a: R b: R }\nchoreography C in W { { a: Go(), b: Wait() } }\n",
      "check"},
@@ -133,10 +138,42 @@ constexpr KindInfo kTable[] = {
      "Alternatives that look alike to a robot must ask the same of it. Either it learns of the choice, by a "
      "message with "
      "a label\nof its own, or it does not notice it (projection, Definition 4.7).",
-     "robot R {\n  motion Idle() interruptible [0 s, inf) {}\n}\nworld W { a: R b: R c: R }\n"
+     "robot R {\n  state x : length in [-1 m, 1 m]\n  motion Idle() interruptible [0 s, inf) {}\n}\nworld W "
+     "{ a: R b: R c: R }\n"
      "choreography C in W {\n  choose at a {\n    when a.x > 1 m { a -> b: left() b -> c: go() }\n"
      "    when a.x <= 1 m { a -> b: right() c -> b: go() }\n  }\n}\n",
      "check"},
+    {Kind::kChoreoCoupled, "choreo-coupled", Severity::kError,
+     "a robot that is carried by one of another thread",
+     "A robot on a mount goes where its carrier goes. In a thread without the carrier, something must be "
+     "assumed of "
+     "it, and\nits own thread must guarantee that: `thread guarantee cart.x == 0 m { ... } thread assume "
+     "cart.x == 0 "
+     "m { ... }`.",
+     "robot Cart {\n  state x : length in [-1 m, 1 m]\n  mount top = self * translate(x, 0 m, 1 m)\n"
+     "  motion Idle() interruptible [0 s, inf) {}\n}\nworld W { a: Cart b: Cart on a.top }\n"
+     "choreography C in W { parallel { thread { a: Idle() } thread { b: Idle() } } }\n",
+     "check"},
+    {Kind::kChoreoEquation, "choreo-equation", Severity::kError, "states that do not fit together",
+     "In a `.chor` file each state stands once to the left, as what goes on, and once to the right, as where "
+     "something\n"
+     "leads; the first one only to the left. Loops go back to a merge. Threads join where they were forked.",
+     TEAM
+     "== example.chor\nC = def\n  s = (a: Idle(), b: Idle()); t\n  t = a -> b: go(); u\nin [a_x == 0] s\n",
+     "check"},
+    {Kind::kChoreoPrecedence, "choreo-precedence", Severity::kWarning,
+     "operators that bind in an unusual way",
+     "Files of the original tool are read as that tool reads them: `&&` and `||` bind equally, a sign binds "
+     "tighter "
+     "than a\npower, powers associate to the left, and in programs comparisons bind like `&&`. Brackets make "
+     "it plain.",
+     TEAM "== example.chor\nC = def\n  s = (a: Idle(), b: Idle()); t\n  t = end\nin [a_x == 0 || a_x > 0 && "
+          "b_x == 0] s\n",
+     "check"},
+    {Kind::kChoreoImport, "choreo-import", Severity::kError, "a file that cannot be imported",
+     "`import \"FILE\"` reads another `.rondo` or `.chor` file; its path is relative to the file that "
+     "imports it.",
+     "import \"nowhere.rondo\"\n", "check"},
 };
 
 }  // namespace

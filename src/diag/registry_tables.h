@@ -9,7 +9,9 @@ namespace rondo::diag {
 
 std::span<const KindInfo> SyntaxKinds();
 std::span<const KindInfo> SmtKinds();
+std::span<const KindInfo> RobotKinds();
 std::span<const KindInfo> ChoreoKinds();
+std::span<const KindInfo> ProcessKinds();
 std::span<const KindInfo> KoordNameKinds();
 std::span<const KindInfo> KoordTypeKinds();
 std::span<const KindInfo> KoordControlKinds();

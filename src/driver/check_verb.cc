@@ -17,16 +17,20 @@ namespace {
 struct Options {
   std::vector<std::string> files;
   std::string spec;
+  std::vector<std::string> admitted;
   bool json = false;
 };
 
 int Run(const Options& options) {
   Session session;
   bool readable = true;
+  std::vector<std::vector<std::string>>
+      motion;  // by `.rondo` file: what is not one belongs to the one before it
   for (const std::string& file : options.files) {
     const size_t before = session.diagnostics.errors();
-    if (std::filesystem::path(file).extension() == ".rondo") {
-      readable = CheckMotion(file, session) && readable;
+    if (IsMotionFile(file)) {
+      if (motion.empty() || std::filesystem::path(file).extension() == ".rondo") motion.emplace_back();
+      motion.back().push_back(file);
       continue;
     }
     const auto program = Load({file, options.spec, true}, session);
@@ -36,6 +40,7 @@ int Run(const Options& options) {
     }
     if (session.diagnostics.errors() == before) koord::Check(*program, session.diagnostics);
   }
+  for (const auto& files : motion) readable = CheckMotion(files, options.admitted, session) && readable;
   const bool good = readable && !session.diagnostics.has_errors();
   if (options.json) {
     const nlohmann::json list = DiagnosticsToJson(session.sources, session.diagnostics);
@@ -54,9 +59,15 @@ void AddCheckVerb(CLI::App& app, int& status) {
       app.add_subcommand("check", "report every error and warning of programs and choreographies");
   verb->add_option(
           "FILE", options->files,
-          "Koord programs (`NAME.spec` beside one belongs to it), and robots and choreographies (`.rondo`)")
+          "Koord programs (`NAME.spec` beside one belongs to it); robots and choreographies (`.rondo`), and "
+          "the "
+          "original choreographies (`.chor`) and programs (`ROBOT.rosl`) about the world of a `.rondo` file "
+          "before them")
       ->required();
   verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
+  verb->add_option("--option", options->admitted,
+                   "an option for every choreography, as if it were written there: `equal_durations`")
+      ->allow_extra_args(false);
   verb->add_flag("--json", options->json, "the diagnostics as JSON on standard output");
   verb->footer("example: rondo check examples/koord/delivery.koord");
   verb->callback([options, &status] { status = Run(*options); });

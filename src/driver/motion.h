@@ -2,23 +2,32 @@
 
 #include <memory>
 
+#include "choreo/graph/declarations.h"
 #include "choreo/graph/graph.h"
 #include "driver/load.h"
 
 namespace rondo::driver {
 
-/// A `.rondo` file that was read, and the graphs of its choreographies.
+/// Robots, worlds, choreographies and processes that were read, and the graphs of the choreographies.
 struct Motion {
   choreo::Module module;
+  expr::Arena arena;
+  std::unique_ptr<choreo::Declarations> declarations;  ///< if nothing was wrong so far
   std::vector<choreo::Graph> graphs;
 };
 
-/// Reads a file and builds its graphs; nothing after a message when it cannot be read. What is wrong is in
-/// `session.diagnostics`.
-std::unique_ptr<Motion> LoadMotion(const std::string& file, Session& session);
+/// Is it a file about robots that move: `.rondo`, `.chor` or `.rosl`?
+bool IsMotionFile(const std::string& file);
 
-/// Everything that can be said of a file without a solver: names, well-formedness, projections. False if it
-/// cannot be read.
-bool CheckMotion(const std::string& file, Session& session);
+/// Reads files in order, and what they import, each once; builds the graphs. Nothing after a message when one
+/// cannot be read. What is wrong is in `session.diagnostics`.
+/// `options`: such as `equal_durations`, for every choreography.
+std::unique_ptr<Motion> LoadMotion(const std::vector<std::string>& files,
+                                   const std::vector<std::string>& options, Session& session);
+
+/// Everything that can be said of files without a solver: names, units, well-formedness, projections,
+/// processes. False if one cannot be read.
+bool CheckMotion(const std::vector<std::string>& files, const std::vector<std::string>& options,
+                 Session& session);
 
 }  // namespace rondo::driver

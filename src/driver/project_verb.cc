@@ -47,7 +47,7 @@ nlohmann::json ToJson(const choreo::Graph& graph, const lang::ExprPool& pool, co
 
 int Run(const Options& options) {
   Session session;
-  const auto motion = LoadMotion(options.file, session);
+  const auto motion = LoadMotion({options.file}, {}, session);
   if (motion == nullptr) return kRejected;
   nlohmann::json list = nlohmann::json::array();
   std::string text;

@@ -108,7 +108,7 @@ class Printer {
       case ExprKind::kTuple:
         return fmt::format("({})", Items(e, 0));
       case ExprKind::kQuantity:
-        return fmt::format("{} {}", Print(e.args[0], 0), e.text);
+        return Print(e.args[0], 0) + (e.text.empty() ? "" : " " + e.text);
       case ExprKind::kQuantifier: {
         std::string binders;
         for (const Binder& b : e.binders) {

@@ -13,9 +13,10 @@ using diag::Kind;
 using diag::Span;
 
 // Longest first.
-constexpr std::array<std::string_view, 36> kPunctuation = {
-    "<=>", "==", "!=", "<=", ">=", "&&", "||", "<<", "->", "++", "+=", "=>", "(", ")", "[", "]", "{", "}",
-    ":",   ";",  ",",  ".",  "+",  "-",  "*",  "/",  "%",  "=",  "<",  ">",  "!", "&", "|", "?", "@", "\\"};
+constexpr std::array<std::string_view, 37> kPunctuation = {
+    "<=>", "==", "!=", "<=", ">=", "&&", "||", "<<", "->", "++", "+=", "=>", "(",
+    ")",   "[",  "]",  "{",  "}",  ":",  ";",  ",",  ".",  "+",  "-",  "*",  "/",
+    "%",   "=",  "<",  ">",  "!",  "&",  "|",  "?",  "@",  "'",  "\\"};
 
 struct Spelling {
   std::string_view sign;
@@ -200,7 +201,7 @@ class Lexer {
       return Emit(TokenKind::kName, begin, at_);
     }
     if (IsDigit(c) || (c == '.' && IsDigit(Peek(1)))) return ReadNumber();
-    if (c == '"' || c == '\'') return ReadString(c);
+    if (c == '"' || (c == '\'' && !options_.prime)) return ReadString(c);
     for (const Spelling& spelling : kSigns) {
       if (!text_.substr(at_).starts_with(spelling.sign)) continue;
       at_ += spelling.sign.size();
@@ -208,7 +209,9 @@ class Lexer {
     }
     for (const std::string_view sign : kPunctuation) {
       if (!text_.substr(at_).starts_with(sign)) continue;
-      if (sign == "?" || sign == "@" || sign == "\\" || sign == "&" || (sign == "|" && !options_.bar)) break;
+      if (sign == "?" || (sign == "@" && !options_.at) || sign == "\\" || sign == "&" ||
+          (sign == "|" && !options_.bar))
+        break;
       at_ += sign.size();
       return ReadPunctuation(begin, sign);
     }

@@ -8,6 +8,8 @@ namespace rondo::lang {
 struct LexerOptions {
   bool indentation = true;  ///< emit kNewline, kIndent and kDedent; off for languages with braces
   bool bar = false;         ///< is `|` a sign of its own?
+  bool prime = false;       ///< is `'` a sign of its own, as in `x' = v`?
+  bool at = false;          ///< is `@` a sign?
   bool half_open = false;   ///< may `)` close `[`, as in `[0, inf)`?
 };
 

@@ -18,12 +18,13 @@ constexpr std::array<Unit, 7> kUnits{{{"m", kLength, 1, 1},
                                       {"rad", kAngle, 1, 1},
                                       {"deg", kAngle, 1, 180, true}}};
 
-constexpr std::array<std::pair<std::string_view, Dimension>, 6> kDimensions{{{"number", {}},
+constexpr std::array<std::pair<std::string_view, Dimension>, 7> kDimensions{{{"number", {}},
                                                                              {"length", kLength},
                                                                              {"time", kTime},
                                                                              {"angle", kAngle},
                                                                              {"speed", {1, -1, 0}},
-                                                                             {"acceleration", {1, -2, 0}}}};
+                                                                             {"acceleration", {1, -2, 0}},
+                                                                             {"angular_speed", {0, -1, 1}}}};
 
 }  // namespace
 

@@ -27,7 +27,7 @@ struct Unit {
 /// nullptr if there is no unit of this name.
 const Unit* FindUnit(std::string_view name);
 
-/// `length`, `time`, `angle`, `speed`, `acceleration`, `number`; nullptr for other names.
+/// `length`, `time`, `angle`, `speed`, `acceleration`, `angular_speed`, `number`; nullptr for other names.
 const Dimension* FindDimension(std::string_view name);
 
 }  // namespace rondo::lang

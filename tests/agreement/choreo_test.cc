@@ -22,7 +22,8 @@ class Texts {
 
   std::string Whole() {
     std::string text =
-        "robot R {\n motion Idle() interruptible [0 s, inf) {}\n motion Go() noninterruptible [1 s, 1 s] "
+        "robot R {\n state x : length in [-9 m, 9 m]\n motion Idle() interruptible [0 s, inf) {}\n motion "
+        "Go() noninterruptible [1 s, 1 s] "
         "{}\n}\n"
         "world W { a: R b: R c: R }\nchoreography C in W {\n";
     return text + Steps("abc", 3) + "}\n";
@@ -310,9 +311,11 @@ TEST(Choreo, ProjectionsAgreeWithTheWhole) {
     diag::SourceSet sources;
     diag::Diagnostics diagnostics;
     Module module;
+    expr::Arena arena;
     Parse(sources, sources.Add("random", text), module, diagnostics);
     ASSERT_FALSE(diagnostics.has_errors()) << text;
-    const std::vector<Graph> graphs = Lower(module, diagnostics);
+    Declarations declarations(module, arena, diagnostics);
+    const std::vector<Graph> graphs = Lower(module, declarations);
     if (graphs.empty()) continue;
     CheckWellFormed(graphs[0], diagnostics);
     if (diagnostics.has_errors()) continue;

@@ -5,6 +5,7 @@
 """
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -21,10 +22,15 @@ def main():
         liar.chmod(0o755)
         for kind in listed:
             info = json.loads(subprocess.run([rondo, "explain", "--json", kind["kind"]], capture_output=True, check=True).stdout)
-            suffix = ".smt2" if info["verb"] in ("solve", "certify") else ".rondo" if kind["kind"].startswith("choreo-") else ".koord"
-            program = pathlib.Path(folder) / (kind["kind"] + suffix)
-            program.write_text(info["example"])
-            args = [rondo, info["verb"], "--json", str(program)]
+            motion = kind["kind"].startswith(("robot-", "choreo-", "process-"))
+            suffix = ".smt2" if info["verb"] in ("solve", "certify") else ".rondo" if motion else ".koord"
+            args = [rondo, info["verb"], "--json"]
+            # An example of several files: each begins with a line `== NAME`.
+            for part in re.split("^== ", "== " + kind["kind"] + suffix + "\n" + info["example"], flags=re.MULTILINE)[1:]:
+                name, text = part.split("\n", 1)
+                program = pathlib.Path(folder) / name
+                program.write_text(text)
+                args.append(str(program))
             if info["verb"] == "prove":
                 args += ["--no-cache", "--timeout", "5"]
             if kind["kind"] == "koord-disagreement":

@@ -12,9 +12,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   diag::SourceSet sources;
   diag::Diagnostics diagnostics;
   choreo::Module module;
+  expr::Arena arena;
   choreo::Parse(sources, sources.Add("input", std::string(reinterpret_cast<const char*>(data), size)), module,
                 diagnostics);
-  for (const choreo::Graph& graph : choreo::Lower(module, diagnostics)) {
+  choreo::Declarations declarations(module, arena, diagnostics);
+  for (const choreo::Graph& graph : choreo::Lower(module, declarations)) {
     choreo::CheckWellFormed(graph, diagnostics);
     for (size_t r = 0; r < graph.robots.size(); ++r)
       choreo::Project(graph, module.exprs, choreo::RobotId(r), diagnostics);

@@ -13,4 +13,11 @@ std::string Graph::Names(const Scope& scope) const {
   return text;
 }
 
+std::optional<RobotId> Graph::Find(std::string_view robot) const {
+  for (size_t i = 0; i < robots.size(); ++i) {
+    if (robots[i].text == robot) return RobotId(i);
+  }
+  return std::nullopt;
+}
+
 }  // namespace rondo::choreo

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -8,6 +9,7 @@
 #include "base/id.h"
 #include "choreo/syntax/ast.h"
 #include "expr/rational.h"
+#include "robot/model/world.h"
 
 namespace rondo::choreo {
 
@@ -23,13 +25,30 @@ struct Duration {
   bool interruptible = true;
 };
 
+/// A motion of one robot with its arguments. Equal ones are one: compare them by index.
+struct Instance {
+  RobotId robot;
+  const MotionDef* motion = nullptr;
+  std::vector<robot::Value> args;  ///< by parameter
+  robot::Contract contract;
+  Duration duration;
+  std::string text;  ///< as it was written first: `Move(1 m)`
+};
+
 /// What one robot does in a joint motion.
 struct Part {
   RobotId robot;
   diag::Span span;
-  const MotionDef* motion = nullptr;
-  const MotionCall* call = nullptr;
+  size_t instance = 0;
   Duration duration;
+};
+
+/// What is known in one thread of a fork: the space that is its own, what it may assume of the other threads,
+/// and what it promises them.
+struct ThreadFacts {
+  diag::Span span;
+  std::optional<expr::TermId> region;  ///< over the point of the world
+  expr::TermId assume, guarantee;
 };
 
 enum class NodeKind : uint8_t { kMessage, kMotion, kChoice, kMerge, kFork, kJoin, kEnd };
@@ -41,27 +60,35 @@ struct Node {
   Scope scope;               ///< the robots whose choreography this is
   RobotId from, to;          ///< kMessage
   std::string label;
-  const Stmt* message = nullptr;
-  std::vector<Part> parts;     ///< kMotion: one for each robot in scope
-  RobotId chooser;             ///< kChoice
+  std::vector<robot::Value> payload;  ///< kMessage: values, or constants that stand for unknown ones
+  std::vector<std::string> names;     ///< of the payload; empty for values
+  expr::TermId refinement;            ///< kMessage: what is known of the payload
+  expr::TermId when;                  ///< kMessage: its guard
+  std::vector<Part> parts;            ///< kMotion: one for each robot in scope
+  RobotId chooser;                    ///< kChoice
   std::vector<ExprId> guards;  ///< kChoice, for each of `next`; invalid: where the guards before do not hold
+  std::vector<expr::TermId> guard_terms;
   std::vector<Scope> threads;  ///< kFork, for each of `next`
-  NodeId join;                 ///< kFork
-  const Stmt* threads_of = nullptr;  ///< kFork: as written
+  std::vector<ThreadFacts> facts;
+  NodeId join;  ///< kFork
 };
 
 /// A choreography, whatever it was written in: messages, joint motions, choices, and threads of robots that
 /// do not meet. Refers to the module that it was made from.
 struct Graph {
   const ChoreographyDef* source = nullptr;
-  std::vector<Name> robots;
-  std::vector<const RobotDef*> types;  ///< by robot
+  std::shared_ptr<const robot::World> world;
+  std::vector<Name> robots;  ///< as `world->bodies`
+  std::vector<Instance> instances;
+  expr::TermId initially;
   std::vector<Node> nodes;
   NodeId start;
   bool equal_durations = false;  ///< `option equal_durations`
 
   const Node& operator[](NodeId id) const { return nodes[id.index()]; }
   const std::string& NameOf(RobotId id) const { return robots[id.index()].text; }
+  const robot::Body& BodyOf(RobotId id) const { return world->bodies[id.index()]; }
+  std::optional<RobotId> Find(std::string_view robot) const;
   /// "`a`, `b` and `c`"
   std::string Names(const Scope& scope) const;
 };

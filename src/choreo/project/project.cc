@@ -13,16 +13,6 @@ namespace {
 using diag::Kind;
 using Set = std::set<NodeId>;
 
-std::string MoveText(const lang::ExprPool& pool, const Part& part) {
-  std::string args;
-  for (const Argument& a : part.call->args) {
-    args += args.empty() ? "" : ", ";
-    if (!a.name.text.empty()) args += a.name.text + " = ";
-    args += lang::PrintExpr(pool, a.value);
-  }
-  return fmt::format("{}({})", part.motion->name.text, args);
-}
-
 std::string Describe(const Graph& graph, const Action& a) {
   switch (a.kind) {
     case Action::Kind::kSend:
@@ -113,7 +103,7 @@ class Projection {
       return {sends ? Action::Kind::kSend : Action::Kind::kReceive, sends ? n.to : n.from, n.label};
     }
     for (const Part& p : n.parts) {
-      if (p.robot == robot_) return {Action::Kind::kMove, {}, MoveText(pool_, p)};
+      if (p.robot == robot_) return {Action::Kind::kMove, {}, graph_.instances[p.instance].text};
     }
     return {};
   }
@@ -133,6 +123,7 @@ class Projection {
       } else {
         const Action a = ActionOf(n);
         targets[a].push_back(n.next[0]);
+        type_.states[s].nodes[a].push_back(id);
         origins.emplace(a, id);
       }
     }
@@ -144,6 +135,7 @@ class Projection {
       type_.states[s].next.emplace(action, to);
     }
     if (!choice.valid()) return;
+    type_.states[s].chosen = choice;
     const Node& n = graph_[choice];
     for (size_t b = 0; b < n.next.size(); ++b) {
       const StateId to = StateOf(Closure({n.next[b]}), {s, std::nullopt});

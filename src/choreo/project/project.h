@@ -22,8 +22,10 @@ using StateId = base::Id<struct StateTag>;
 
 struct LocalState {
   std::map<Action, StateId> next;
+  std::map<Action, std::vector<NodeId>> nodes;  ///< where each action comes from
   /// The robot chooses: guards and where they lead; an invalid guard: where the ones before do not hold.
   std::vector<std::pair<ExprId, StateId>> choice;
+  NodeId chosen;  ///< the node of that choice
   bool ends = false;
 };
 

@@ -6,74 +6,23 @@
 
 #include "lang/syntax_tree.h"
 #include "lang/token.h"
+#include "robot/syntax/ast.h"
 
 /// The syntax of `.rondo` files: robots with motion primitives, worlds, choreographies (docs/motion.md).
 namespace rondo::choreo {
 
 using lang::ExprId;
-
-struct Name {
-  std::string text;
-  diag::Span span;
-};
-
-/// `T = 5 s`: a parameter of a robot or motion; the value is a default, and may be missing.
-struct Param {
-  Name name;
-  ExprId value;
-};
-
-/// `state x, y : length in [-10 m, 10 m]`
-struct StateGroup {
-  diag::Span span;
-  std::vector<Name> names;
-  Name dimension;
-  ExprId least, most;
-};
-
-struct ParamGroup {
-  diag::Span span;
-  std::vector<Param> params;
-};
-
-/// One line of a contract: `pre`, `assume`, `during`, `post`, `footprint` with an expression, or `modifies`
-/// with names.
-struct Clause {
-  Name keyword;
-  std::vector<Name> names;
-  ExprId value;
-};
-
-/// `motion Move(d, T = 5 s) noninterruptible [T, T] { ... }`
-struct MotionDef {
-  diag::Span span;
-  Name name;
-  std::vector<Param> params;
-  bool interruptible = false;
-  ExprId least, most;  ///< of the duration
-  std::vector<Clause> clauses;
-};
-
-using RobotItem = std::variant<ParamGroup, StateGroup, MotionDef>;
-
-struct RobotDef {
-  diag::Span span;
-  Name name;
-  std::vector<RobotItem> items;
-};
-
-/// `cart: Cart at (0 m, 0 m, 0 m)`; the place may be missing.
-struct Component {
-  Name name;
-  Name type;
-  ExprId place;
-};
-
-struct WorldDef {
-  diag::Span span;
-  Name name;
-  std::vector<Component> components;
-};
+using robot::Argument;
+using robot::Clause;
+using robot::Component;
+using robot::MotionDef;
+using robot::Name;
+using robot::Param;
+using robot::ParamGroup;
+using robot::RobotDef;
+using robot::RobotItem;
+using robot::StateGroup;
+using robot::WorldDef;
 
 // -- choreographies
 
@@ -81,12 +30,6 @@ struct WorldDef {
 struct Payload {
   Name name, type;  ///< empty for a value
   ExprId value;     ///< the value, or what is known of it; may be missing
-};
-
-/// `d = 2 m`, or an argument without a name.
-struct Argument {
-  Name name;
-  ExprId value;
 };
 
 struct MotionCall {
@@ -111,6 +54,8 @@ struct Stmt;
 struct Branch {
   diag::Span span;            ///< of the line that opens it
   ExprId guard;               ///< kChoose
+  Name contract;              ///< kParallel: a `contract` whose facts hold, too; empty if none
+  std::vector<Name> robots;   ///< kParallel: whom it should be about; empty if that is not said
   std::vector<Clause> facts;  ///< kParallel: `region`, `assume`, `guarantee`
   std::vector<Stmt> body;
 };
@@ -128,15 +73,88 @@ struct Stmt {
   std::vector<Stmt> body;
 };
 
+// -- choreographies as equations (`.chor`)
+
+enum class EquationKind : uint8_t { kMessage, kMotion, kChoice, kMerge, kFork, kJoin, kEnd };
+
+/// `x1 = a -> b: hello(); x2`, `x3 + x4 = x5`, `x6 = { region } x7 || { region } x8`, ...
+struct Equation {
+  EquationKind kind = EquationKind::kEnd;
+  diag::Span span;
+  std::vector<Name> from, to;
+  Stmt step;  ///< what a message, motion, choice or fork says; its branches have no bodies
+};
+
 struct ChoreographyDef {
   diag::Span span;
   Name name, world;
   std::vector<Name> options;
   ExprId initially;  ///< may be missing
   std::vector<Stmt> body;
+  std::vector<Equation> equations;  ///< instead of a body
+  Name first;                       ///< where equations begin
 };
 
-using Item = std::variant<RobotDef, WorldDef, ChoreographyDef>;
+/// `contract Docked { assume ... guarantee ... }`: facts of threads that have a name.
+struct ContractDef {
+  diag::Span span;
+  Name name;
+  std::vector<Clause> facts;
+};
+
+// -- processes
+
+enum class ActKind : uint8_t {
+  kSend,      // send peer.label(values)
+  kReceive,   // receive from peer while Idle() { label(names) => { } ... }
+  kMotion,    // Move(args)
+  kIf,        // if guard { } else { }
+  kWhile,     // while guard { }
+  kLoop,      // loop { }
+  kRec,       // rec X { }
+  kContinue,  // continue X
+  kAssign,    // x = value
+  kExit,      // exit
+};
+
+struct Act;
+
+struct Case {
+  diag::Span span;
+  Name peer, label;
+  std::vector<Name> names;  ///< for what the message carries
+  std::vector<Act> body;
+};
+
+struct Act {
+  ActKind kind = ActKind::kExit;
+  diag::Span span;  ///< of the first line for acts with a body
+  Name peer, label;
+  std::vector<ExprId> values;
+  MotionCall motion;  ///< kReceive: what it does meanwhile; without a name if nothing
+  std::vector<Case> cases;
+  ExprId guard;
+  Name variable;
+  std::vector<Act> body, otherwise;
+};
+
+/// What one robot does of a choreography.
+struct ProcessDef {
+  diag::Span span;
+  Name robot;
+  Name choreography;  ///< empty: the only one there is
+  std::vector<Act> body;
+  /// Motions may be spelled as the original interpreter found them: `moveCart`, `m_MoveCart`.
+  bool loose_names = false;
+};
+
+/// `import "models/cart.rondo"`
+struct ImportDef {
+  diag::Span span;
+  std::string path;
+};
+
+using Item = std::variant<ImportDef, RobotDef, WorldDef, ContractDef, ChoreographyDef, ProcessDef>;
 
 /// One or more files, items in order.
 struct Module {

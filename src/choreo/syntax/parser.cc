@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "lang/expr_parser.h"
+#include "choreo/syntax/process_parser.h"
 #include "lang/lexer.h"
 #include "lang/units.h"
 
@@ -16,13 +16,13 @@ using diag::Kind;
 using diag::Span;
 using lang::TokenKind;
 
-constexpr std::array<std::string_view, 31> kWords = {
-    "robot", "world", "choreography", "param",    "state",    "motion", "interruptible", "noninterruptible",
-    "in",    "at",    "initially",    "option",   "parallel", "thread", "choose",        "when",
-    "loop",  "while", "rec",          "continue", "region",   "assume", "guarantee",     "and",
-    "or",    "not",   "implies",      "true",     "false",    "forall", "exists"};
-constexpr std::array<std::string_view, 6> kClauses = {"pre",  "assume",    "during",
-                                                      "post", "footprint", "modifies"};
+constexpr std::array<std::string_view, 26> kWords = {
+    "choreography", "process", "import",    "contract", "initially", "option", "parallel",
+    "thread",       "choose",  "when",      "loop",     "while",     "rec",    "continue",
+    "region",       "assume",  "guarantee", "and",      "or",        "not",    "implies",
+    "true",         "false",   "forall",    "exists",   "exit"};
+constexpr std::array<std::string_view, 6> kItems = {"robot",   "world",  "choreography",
+                                                    "process", "import", "contract"};
 constexpr std::array<std::string_view, 3> kFacts = {"region", "assume", "guarantee"};
 constexpr int kDeepestBlock = 100;
 
@@ -31,10 +31,10 @@ bool Contains(const std::array<std::string_view, N>& words, std::string_view wor
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-class Parser : public lang::ExprParser {
+class Parser : public ProcessParser {
  public:
   Parser(const lang::TokenStream& stream, Module& module, diag::Diagnostics& diagnostics)
-      : ExprParser(stream, module.exprs, diagnostics), module_(module) {}
+      : ProcessParser(stream, module.exprs, diagnostics), module_(module) {}
 
   void ParseModule() {
     while (!AtKind(TokenKind::kEnd)) {
@@ -48,168 +48,55 @@ class Parser : public lang::ExprParser {
 
  protected:
   bool IsReserved(std::string_view word) const override { return IsReservedWord(word); }
-  bool IsUnit(std::string_view word) const override { return lang::FindUnit(word) != nullptr; }
 
  private:
-  Name ParseName(std::string_view what) {
-    const Span span = Peek().span;
-    return {ExpectName(what), span};
-  }
-
   // To the next item, over what belongs to this one.
   void Recover() {
-    while (!AtKind(TokenKind::kEnd) && !At("robot") && !At("world") && !At("choreography")) Take();
-    ClearFailure();
-  }
-
-  // Behind the end of a block whose `{` was read, over blocks inside.
-  void SkipToClose() {
-    int depth = 1;
-    while (!AtKind(TokenKind::kEnd)) {
-      if (At("{")) ++depth;
-      if (At("}") && --depth == 0) break;
-      Take();
-    }
-    Accept("}");
+    while (!AtKind(TokenKind::kEnd) && !(AtKind(TokenKind::kName) && Contains(kItems, Peek().text))) Take();
     ClearFailure();
   }
 
   void ParseItem() {
     const Span start = Peek().span;
-    if (Accept("robot")) return ParseRobot(start);
-    if (Accept("world")) return ParseWorld(start);
+    if (Accept("robot")) return Keep(ParseRobot(start));
+    if (Accept("world")) return Keep(ParseWorld(start));
     if (Accept("choreography")) return ParseChoreography(start);
-    Unexpected("`robot`, `world` or `choreography`");
+    if (Accept("process")) return Keep(ParseProcess(start));
+    if (Accept("contract")) return ParseContract(start);
+    if (Accept("import")) return ParseImport(start);
+    Unexpected("`robot`, `world`, `choreography`, `process`, `contract` or `import`");
   }
 
-  // -- robots
-
-  void ParseRobot(Span start) {
-    RobotDef robot;
-    robot.name = ParseName("a robot type");
-    if (!Expect("{", "the name of a robot type")) return;
-    while (!At("}") && !AtKind(TokenKind::kEnd)) {
-      const Span item = Peek().span;
-      if (Accept("param")) {
-        ParamGroup group{item, {}};
-        do {
-          group.params.push_back(ParseParam());
-        } while (!failed() && Accept(","));
-        group.span = item.To(PreviousSpan());
-        robot.items.emplace_back(std::move(group));
-      } else if (Accept("state")) {
-        ParseState(robot, item);
-      } else if (Accept("motion")) {
-        ParseMotion(robot, item);
-      } else {
-        Unexpected("`param`, `state` or `motion`");
-      }
-      if (failed()) return SkipToClose();
-      Accept(";");
-    }
-    Expect("}", "the last part of a robot");
-    robot.span = start.To(PreviousSpan());
-    module_.items.emplace_back(std::move(robot));
+  template <typename T>
+  void Keep(std::optional<T> item) {
+    if (item) module_.items.emplace_back(std::move(*item));
   }
 
-  Param ParseParam() {
-    Param param{ParseName("a parameter"), {}};
-    if (Accept("=")) param.value = ParseExpr();
-    return param;
-  }
-
-  std::vector<Param> ParseParams() {
-    std::vector<Param> params;
-    if (!Expect("(", "the name of a motion")) return params;
-    while (!At(")") && !failed()) {
-      params.push_back(ParseParam());
-      if (!Accept(",")) break;
-    }
-    Expect(")", "the parameters");
-    return params;
-  }
-
-  void ParseRange(ExprId& least, ExprId& most) {
-    Expect("[", "a range should begin here");
-    if (failed()) return;
-    least = ParseExpr();
-    Expect(",", "the lower end of a range");
-    if (failed()) return;
-    most = ParseExpr();
-    if (At(")")) {
-      Take();  // [0, inf)
-    } else {
-      Expect("]", "the upper end of a range");
-    }
-  }
-
-  void ParseState(RobotDef& robot, Span start) {
-    StateGroup group;
-    do {
-      group.names.push_back(ParseName("a state variable"));
-    } while (!failed() && Accept(","));
-    if (!Expect(":", "the state variables")) return;
-    group.dimension = ParseName("a dimension such as `length`, `angle` or `time`");
-    if (Accept("in")) ParseRange(group.least, group.most);
-    group.span = start.To(PreviousSpan());
-    if (!failed()) robot.items.emplace_back(std::move(group));
-  }
-
-  void ParseMotion(RobotDef& robot, Span start) {
-    MotionDef motion;
-    motion.name = ParseName("a motion");
-    motion.params = ParseParams();
-    if (failed()) return;
-    motion.interruptible = At("interruptible");
-    if (!Accept("interruptible") && !Accept("noninterruptible")) {
-      Unexpected("`interruptible` or `noninterruptible`");
+  void ParseImport(Span start) {
+    if (!AtKind(TokenKind::kString)) {
+      Unexpected("the path of a file in quotes");
       return;
     }
-    ParseRange(motion.least, motion.most);
-    motion.span = start.To(PreviousSpan());
-    if (!Expect("{", "the duration of a motion")) return;
-    while (!At("}") && !AtKind(TokenKind::kEnd)) {
-      Clause clause{{std::string(Peek().text), Peek().span}, {}, {}};
-      if (!AtKind(TokenKind::kName) || !Contains(kClauses, Peek().text)) {
-        Unexpected("`modifies`, `pre`, `assume`, `during`, `post` or `footprint`");
-        return;
-      }
-      Take();
-      if (clause.keyword.text == "modifies") {
-        do {
-          clause.names.push_back(ParseName("a state variable"));
-        } while (!failed() && Accept(","));
-      } else {
-        clause.value = ParseExpr();
-      }
-      if (failed()) return;
-      motion.clauses.push_back(std::move(clause));
-      Accept(";");
-    }
-    Expect("}", "the contract of a motion");
-    robot.items.emplace_back(std::move(motion));
+    const lang::Token& token = Take();
+    const size_t size = token.text.size();
+    const std::string path(size > 2 ? token.text.substr(1, size - 2) : std::string_view());
+    module_.items.emplace_back(ImportDef{start.To(token.span), path});
   }
 
-  // -- worlds
-
-  void ParseWorld(Span start) {
-    WorldDef world;
-    world.name = ParseName("a world");
-    if (!Expect("{", "the name of a world")) return;
-    while (!At("}") && !AtKind(TokenKind::kEnd)) {
-      Component component;
-      component.name = ParseName("a robot");
-      Expect(":", "the name of a robot");
-      if (!failed()) component.type = ParseName("a robot type");
-      if (!failed() && Accept("at")) component.place = ParseExpr();
-      if (failed()) return SkipToClose();
-      world.components.push_back(std::move(component));
+  void ParseContract(Span start) {
+    ContractDef contract;
+    contract.name = ParseName("a contract");
+    contract.span = start.To(PreviousSpan());
+    if (!Expect("{", "the name of a contract")) return;
+    while (AtFact() && !failed()) {
+      contract.facts.push_back(ParseClause());
       Accept(";");
     }
-    Expect("}", "the robots of a world");
-    world.span = start.To(PreviousSpan());
-    module_.items.emplace_back(std::move(world));
+    Expect("}", "the facts of a contract");
+    module_.items.emplace_back(std::move(contract));
   }
+
+  bool AtFact() const { return AtKind(TokenKind::kName) && Contains(kFacts, Peek().text); }
 
   // -- choreographies
 
@@ -327,22 +214,8 @@ class Parser : public lang::ExprParser {
   }
 
   MotionCall ParseMotionCall(Name robot) {
-    MotionCall call{std::move(robot), {}, {}};
-    if (!Expect(":", "a robot")) return call;
-    call.motion = ParseName("a motion");
-    if (!Expect("(", "the name of a motion")) return call;
-    while (!At(")") && !failed()) {
-      Argument argument;
-      if (AtKind(TokenKind::kName) && Peek(1).text == "=") {
-        argument.name = ParseName("a parameter");
-        Take();
-      }
-      argument.value = ParseExpr();
-      call.args.push_back(std::move(argument));
-      if (!Accept(",")) break;
-    }
-    Expect(")", "the arguments of a motion");
-    return call;
+    if (!Expect(":", "a robot")) return {std::move(robot), {}, {}};
+    return ParseCall(std::move(robot));
   }
 
   void ParseMessage(Stmt& stmt, Name from) {
@@ -383,12 +256,8 @@ class Parser : public lang::ExprParser {
       branch.span = Peek().span;
       if (!Expect(parallel ? "thread" : "when", parallel ? "`parallel {`" : "`choose at ... {`")) return;
       if (!parallel) branch.guard = ParseExpr();
-      while (parallel && AtKind(TokenKind::kName) && Contains(kFacts, Peek().text) && !failed()) {
-        Clause fact{{std::string(Peek().text), Peek().span}, {}, {}};
-        Take();
-        fact.value = ParseExpr();
-        branch.facts.push_back(std::move(fact));
-      }
+      if (parallel && AtKind(TokenKind::kName) && !AtFact()) branch.contract = ParseName("a contract");
+      while (parallel && AtFact() && !failed()) branch.facts.push_back(ParseClause());
       branch.span = branch.span.To(PreviousSpan());
       if (failed()) return;
       branch.body = ParseBlock(parallel ? "the head of a thread" : "the guard of an alternative");
@@ -404,7 +273,7 @@ class Parser : public lang::ExprParser {
 }  // namespace
 
 bool IsReservedWord(std::string_view word) {
-  return Contains(kWords, word) || lang::FindUnit(word) != nullptr;
+  return Contains(kWords, word) || robot::IsRobotWord(word) || lang::FindUnit(word) != nullptr;
 }
 
 void Parse(const diag::SourceSet& sources, diag::FileId file, Module& module,
@@ -413,6 +282,7 @@ void Parse(const diag::SourceSet& sources, diag::FileId file, Module& module,
   options.indentation = false;
   options.bar = true;
   options.half_open = true;
+  options.prime = true;
   const lang::TokenStream stream = lang::Lex(sources, file, options, diagnostics);
   module.comments.insert(module.comments.end(), stream.comments.begin(), stream.comments.end());
   Parser(stream, module, diagnostics).ParseModule();

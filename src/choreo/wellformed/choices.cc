@@ -86,6 +86,7 @@ void CheckWellFormed(const Graph& graph, diag::Diagnostics& diagnostics) {
   CheckChoices(graph, diagnostics);
   CheckSynchronisation(graph, diagnostics);
   CheckTime(graph, diagnostics);
+  CheckDurations(graph, diagnostics);
 }
 
 }  // namespace rondo::choreo

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "choreo/wellformed/wellformed.h"
 
@@ -13,8 +14,11 @@ using diag::Kind;
 /// A joint motion that was begun, and who has heard since that it ends.
 struct Track {
   NodeId motion;
-  NodeId first;    ///< the first message behind it
+  NodeId first;    ///< the first message behind it, or behind the last join since
   Scope informed;  ///< who took part in messages since
+  /// Who knows that it has ended: at first who could not be interrupted; nobody if all can, so that whoever
+  /// speaks ends it.
+  Scope ready;
   friend auto operator<=>(const Track&, const Track&) = default;
 };
 
@@ -27,7 +31,7 @@ class Synchronisation {
   void Run() {
     for (size_t i = 0; i < graph_.nodes.size(); ++i) {
       const Node& n = graph_.nodes[i];
-      if (n.kind == NodeKind::kMotion) Go(n, {NodeId(i), {}, {}});
+      if (n.kind == NodeKind::kMotion) Go(n, {NodeId(i), {}, {}, Rigid(n)});
     }
     while (!todo_.empty()) {
       auto [id, track] = std::move(todo_.back());
@@ -47,16 +51,27 @@ class Synchronisation {
     const Node& n = graph_[id];
     if (n.kind == NodeKind::kMotion) return Move(n, track);
     if (n.kind == NodeKind::kMessage) Say(id, n, track);
+    // Robots of other threads join: they, too, must learn that all motions have ended.
+    if (n.kind == NodeKind::kJoin && track.first.valid()) {
+      track.ready = std::exchange(track.informed, {});
+      track.first = {};
+    }
     Go(n, track);
   }
 
+  // The robots whose motion cannot be interrupted.
+  static Scope Rigid(const Node& motion) {
+    Scope rigid;
+    for (const Part& p : motion.parts) {
+      if (!p.duration.interruptible) rigid.insert(p.robot);
+    }
+    return rigid;
+  }
+
   void Say(NodeId id, const Node& n, Track& track) {
-    const Scope& moving = graph_[track.motion].scope;
-    const auto concerns = [&](RobotId r) { return moving.contains(r) || track.informed.contains(r); };
-    if (!concerns(n.from) && !concerns(n.to)) return;
     if (!track.first.valid()) {
       track.first = id;
-      CheckReady(n, track);
+      CheckReady(id, n, track);
     } else if (!track.informed.contains(n.from)) {
       diagnostics_
           .Report(Kind::kChoreoUnordered, n.span,
@@ -69,19 +84,50 @@ class Synchronisation {
     track.informed.insert({n.from, n.to});
   }
 
-  // Who sends first behind a motion must be the one who could not be interrupted, if there is one.
-  void CheckReady(const Node& n, const Track& track) {
-    for (const Part& p : graph_[track.motion].parts) {
-      if (p.duration.interruptible || p.robot == n.from) continue;
-      diagnostics_
-          .Report(Kind::kChoreoNotReady, n.span,
-                  fmt::format("`{}` sends while `{}` may still be moving", graph_.NameOf(n.from),
-                              graph_.NameOf(p.robot)))
-          .At(p.span, "this motion cannot be interrupted")
-          .Help(fmt::format("let `{}` say when it has finished: it should send the first message",
-                            graph_.NameOf(p.robot)));
-      return;
+  // Who sends first behind a motion must know that it has ended.
+  void CheckReady(NodeId id, const Node& n, const Track& track) {
+    if (track.ready.empty() || track.ready.contains(n.from)) return;
+    if (graph_.equal_durations && EndsWithIt(id, n.from)) return;
+    const RobotId robot = *track.ready.begin();
+    const Node& motion = graph_[track.motion];
+    const auto part = std::ranges::find_if(motion.parts, [&](const Part& p) { return p.robot == robot; });
+    auto& report = diagnostics_.Report(Kind::kChoreoNotReady, n.span,
+                                       fmt::format("`{}` sends while `{}` may still be moving",
+                                                   graph_.NameOf(n.from), graph_.NameOf(robot)));
+    report.At(part == motion.parts.end() ? motion.span : part->span, "this motion cannot be interrupted")
+        .Help(fmt::format("let `{}` say when it has finished: it should send the first message",
+                          graph_.NameOf(robot)));
+    if (!graph_.equal_durations && EndsWithIt(id, n.from))
+      report.Help("`option equal_durations` admits motions of one fixed duration");
+  }
+
+  // Did the robot itself last do what cannot be interrupted? Then it knows when that ended; where motions of
+  // one fixed duration are admitted, everything else that could not be interrupted ended at this instant,
+  // too.
+  bool EndsWithIt(NodeId id, RobotId robot) {
+    if (before_.empty()) {
+      before_.resize(graph_.nodes.size());
+      for (size_t i = 0; i < graph_.nodes.size(); ++i) {
+        for (const NodeId next : graph_.nodes[i].next) before_[next.index()].emplace_back(i);
+      }
     }
+    std::set<NodeId> seen;
+    std::vector<NodeId> todo{id};
+    bool found = false;
+    while (!todo.empty()) {
+      const NodeId at = todo.back();
+      todo.pop_back();
+      if (!seen.insert(at).second) continue;
+      const Node& n = graph_[at];
+      if (!n.scope.contains(robot)) continue;  // another thread
+      if (n.kind == NodeKind::kMotion) {
+        if (!Rigid(n).contains(robot)) return false;
+        found = true;
+      } else {
+        todo.insert(todo.end(), before_[at.index()].begin(), before_[at.index()].end());
+      }
+    }
+    return found;
   }
 
   void Move(const Node& n, const Track& track) {
@@ -90,6 +136,8 @@ class Synchronisation {
     if (n.scope.size() == 1 && before.scope == n.scope) return;
     if (std::ranges::none_of(n.scope, [&](RobotId r) { return before.scope.contains(r); })) return;
     if (!track.first.valid()) {
+      // Everybody knows when its own motion has ended, and all of them ended at one instant.
+      if (graph_.equal_durations && Rigid(before) == before.scope) return;
       diagnostics_
           .Report(Kind::kChoreoMotionAfterMotion, n.span,
                   fmt::format("{} change their motion without a message", graph_.Names(n.scope)))
@@ -114,6 +162,7 @@ class Synchronisation {
   diag::Diagnostics& diagnostics_;
   std::vector<std::pair<NodeId, Track>> todo_;
   std::set<std::pair<NodeId, Track>> seen_;
+  std::vector<std::vector<NodeId>> before_;  // predecessors
 };
 
 }  // namespace

@@ -22,7 +22,6 @@ class Time {
   void Run() {
     for (const Node& n : graph_.nodes) {
       if (n.kind == NodeKind::kMotion) Step(n);
-      if (n.kind == NodeKind::kFork) Threads(n);
     }
     const auto still = [](const Node& n) { return n.kind != NodeKind::kMotion; };
     const auto silent = [&](const Node& n) { return still(n) && n.kind != NodeKind::kMessage; };
@@ -71,50 +70,6 @@ class Time {
         return;
       }
     }
-  }
-
-  // Time passes for all threads or for none.
-  void Threads(const Node& fork) {
-    std::optional<size_t> moves, still;
-    for (size_t b = 0; b < fork.next.size(); ++b) {
-      const auto [moving, silent] = Ways(fork.next[b], fork.join);
-      // A thread may be both: then another one is needed to contradict it.
-      if (moving && (!moves || moves == still)) moves = b;
-      if (silent && (!still || moves == still)) still = b;
-    }
-    if (!moves || !still || (moves == still && fork.next.size() < 2)) return;
-    const Branch* branch = Thread(fork, *still);
-    const std::string names = graph_.Names(fork.threads[*still]);
-    auto& report = diagnostics_.Report(Kind::kChoreoThreadStill, branch == nullptr ? fork.span : branch->span,
-                                       fmt::format("no time passes for {} while others move", names));
-    report.At(fork.span, "in this `parallel`")
-        .Note("time passes for every robot: a thread without a motion ends at the instant at which it began")
-        .Help(fmt::format("let {} idle", names));
-  }
-
-  const Branch* Thread(const Node& fork, size_t index) const {
-    return fork.threads_of == nullptr || index >= fork.threads_of->branches.size()
-               ? nullptr
-               : &fork.threads_of->branches[index];
-  }
-
-  // Is there a motion on some way from `start` to `join`, and is there a way without one?
-  std::pair<bool, bool> Ways(NodeId start, NodeId join) const {
-    std::set<NodeId> still, any;
-    for (const bool silent : {true, false}) {
-      std::set<NodeId>& seen = silent ? still : any;
-      std::vector<NodeId> todo{start};
-      while (!todo.empty()) {
-        const NodeId id = todo.back();
-        todo.pop_back();
-        const Node& n = graph_[id];
-        if ((silent && n.kind == NodeKind::kMotion) || !seen.insert(id).second || id == join) continue;
-        todo.insert(todo.end(), n.next.begin(), n.next.end());
-      }
-    }
-    const bool moving =
-        std::ranges::any_of(any, [&](NodeId id) { return graph_[id].kind == NodeKind::kMotion; });
-    return {moving, still.contains(join)};
   }
 
   static bool AreEqual(const std::vector<const Part*>& parts) {

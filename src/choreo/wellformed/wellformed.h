@@ -22,4 +22,8 @@ void CheckSynchronisation(const Graph& graph, diag::Diagnostics& diagnostics);
 /// motion. Cost: linear.
 void CheckTime(const Graph& graph, diag::Diagnostics& diagnostics);
 
+/// Rule 4, across threads: durations add up along each thread of a fork, and all threads can be through at
+/// one instant, whatever the motions that cannot be interrupted take. Cost: linear, nested loops apart.
+void CheckDurations(const Graph& graph, diag::Diagnostics& diagnostics);
+
 }  // namespace rondo::choreo

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "choreo/graph/calls.h"
+
+namespace rondo::choreo {
+
+/// Which robots a thread mentions, and which of them move in it.
+struct ThreadRobots {
+  Scope mentioned, moving;
+};
+
+/// Makes the nodes of a graph and checks what concerns one node alone: names, arguments, units, owners of
+/// guards, and which robot belongs to which thread (rule 1, scopes).
+class NodeBuilder {
+ public:
+  explicit NodeBuilder(Declarations& declarations)
+      : declarations_(declarations),
+        evaluator_(declarations.evaluator()),
+        pool_(evaluator_.pool()),
+        diagnostics_(evaluator_.diagnostics()),
+        calls_(graph_, declarations) {}
+  NodeBuilder(const NodeBuilder&) = delete;
+  NodeBuilder& operator=(const NodeBuilder&) = delete;
+
+ protected:
+  /// World, options, initial state. All robots, or nothing after a report.
+  std::optional<Scope> Begin(const ChoreographyDef& source);
+  /// The graph, unless an error was reported since the beginning.
+  std::optional<Graph> Finish();
+
+  NodeId Add(Node node);
+  static Node Make(NodeKind kind, diag::Span span, const Scope& scope);
+  Node MakeMessage(const Stmt& s, const Scope& scope);
+  Node MakeMotion(const Stmt& s, const Scope& scope);
+  /// A fork without successors and without its join. `threads`: by branch.
+  Node MakeFork(const Stmt& s, const std::vector<ThreadRobots>& threads, const Scope& scope);
+  /// The next alternative of a choice; an invalid guard: where the ones before do not hold.
+  void AddGuard(ExprId guard, Node& choice);
+  /// Adds what one step mentions.
+  void Mentions(const Stmt& s, ThreadRobots& thread) const;
+  /// A robot in scope; else invalid, after a report.
+  RobotId Robot(const Name& name, const Scope& scope);
+  /// The robots whose state an expression reads, and where.
+  std::map<RobotId, diag::Span> Owners(ExprId id) const;
+
+  Declarations& declarations_;
+  robot::Evaluator& evaluator_;
+  const lang::ExprPool& pool_;
+  diag::Diagnostics& diagnostics_;
+  Graph graph_;
+
+ private:
+  void AddPayload(const Payload& payload, robot::Scope& scope, std::vector<expr::TermId>& known, Node& node);
+  std::vector<Scope> Threads(const Stmt& s, const std::vector<ThreadRobots>& threads, const Scope& scope);
+  ThreadFacts Facts(const Branch& branch);
+  void CheckCoupling(const Stmt& s, const Node& fork, const Scope& scope);
+
+  Calls calls_;
+  std::map<std::string, RobotId, std::less<>> robots_;
+  size_t errors_ = 0;
+};
+
+}  // namespace rondo::choreo

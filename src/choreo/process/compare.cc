@@ -1,0 +1,315 @@
+#include "choreo/process/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "expr/substitute.h"
+
+namespace rondo::choreo {
+
+using diag::Kind;
+using diag::Span;
+using expr::TermId;
+using robot::Value;
+using robot::ValueKind;
+
+void Wrong::Report(diag::Diagnostics& diagnostics, Span choreography) const {
+  auto& report = diagnostics.Report(kind, span, message);
+  report.At(choreography, "the choreography");
+  if (!help.empty()) report.Help(help);
+}
+
+Compare::Compare(const Flow& flow, Graph& graph, Declarations& declarations)
+    : flow_(flow),
+      graph_(graph),
+      declarations_(declarations),
+      evaluator_(declarations.evaluator()),
+      arena_(evaluator_.arena()),
+      calls_(graph, declarations, flow.source->loose_names) {}
+
+bool Compare::Restart() {
+  const bool again = restarts_;
+  restarts_ = false;
+  bindings_.clear();
+  locals_.clear();
+  if (again) conditions_.clear();
+  return again;
+}
+
+// The original interpreter found `OK` as `ok` and as `msg_ok`.
+bool Compare::SameLabel(const std::string& asked, const std::string& given) const {
+  if (asked == given || !flow_.source->loose_names) return asked == given;
+  const auto same = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+  };
+  const std::string_view bare =
+      std::string_view(given).starts_with("msg_") ? std::string_view(given).substr(4) : given;
+  return std::ranges::equal(asked, bare, same);
+}
+
+// -- names
+
+robot::Scope Compare::ScopeOf(const FlowNode& node) const {
+  robot::Scope scope;
+  scope.outer = &graph_.BodyOf(flow_.robot).scope;
+  scope.names = locals_;
+  for (const Case* c : node.bindings) {
+    const auto it = bindings_.find(c);
+    for (size_t i = 0; i < c->names.size(); ++i)
+      scope.names[c->names[i].text] = it == bindings_.end() ? Value{} : it->second.values[i];
+  }
+  return scope;
+}
+
+TermId Compare::KnownAt(const FlowNode& node) const {
+  std::vector<TermId> known;
+  for (const Case* c : node.bindings) {
+    if (const auto it = bindings_.find(c); it != bindings_.end()) known.push_back(it->second.known);
+  }
+  return arena_.And(known);
+}
+
+TermId Compare::GuardOf(const FlowNode& node) {
+  if (!node.act->guard.valid()) return arena_.True();
+  return evaluator_.Formula(node.act->guard, ScopeOf(node), "a formula");
+}
+
+void Compare::CheckAssignment(const FlowNode& node) {
+  const Name& name = node.act->variable;
+  const robot::Scope scope = ScopeOf(node);
+  Value value = evaluator_.Evaluate(node.act->guard, scope);
+  if (value.kind == ValueKind::kError) return;
+  if (value.terms.empty()) {
+    evaluator_.WrongType(evaluator_.SpanOf(node.act->guard), value, "a quantity, a point or a formula");
+    return;
+  }
+  const std::string own = graph_.NameOf(flow_.robot) + "_";
+  const std::string bare = name.text.starts_with(own) ? name.text.substr(own.size()) : name.text;
+  if (graph_.BodyOf(flow_.robot).scope.Find(bare) != nullptr) {
+    evaluator_.diagnostics()
+        .Report(Kind::kProcessStep, name.span,
+                fmt::format("`{}` belongs to the robot, and is not assigned to", bare))
+        .Note("the state of a robot changes by its motions, what it senses by the world")
+        .Help("assign to a name of the process");
+    return;
+  }
+  for (TermId& t : value.terms) t = arena_.FreshConstant(name.text, arena_.sort_of(t));
+  value.squared.reset();
+  value.any_dimension = false;
+  const auto [it, fresh] = locals_.emplace(name.text, value);
+  if (fresh || (it->second.kind == value.kind && it->second.dimension == value.dimension)) return;
+  evaluator_.WrongType(evaluator_.SpanOf(node.act->guard), value,
+                       fmt::format("{}, as before,", robot::Describe(it->second)));
+}
+
+// -- conditions
+
+bool Compare::Refuted(TermId hypothesis, TermId goal) {
+  if (goal == arena_.False()) return hypothesis != arena_.False();
+  return hypothesis == arena_.Not(goal);
+}
+
+void Compare::Need(Span span, std::string what, TermId hypothesis, TermId goal, std::vector<NodeId> at) {
+  if (goal == arena_.True() || hypothesis == goal || hypothesis == arena_.False()) return;
+  // A conjunct of what is known.
+  if (arena_.op(hypothesis) == expr::Op::kAnd && std::ranges::count(arena_.args(hypothesis), goal) > 0)
+    return;
+  conditions_.push_back({span, std::move(what), hypothesis, goal, std::move(at)});
+}
+
+TermId Compare::Equal(const Value& a, const Value& b) {
+  std::vector<TermId> equal;
+  for (size_t i = 0; i < a.terms.size(); ++i) equal.push_back(arena_.Eq(a.terms[i], b.terms[i]));
+  return arena_.And(equal);
+}
+
+// -- payloads
+
+std::optional<Wrong> Compare::SendPayload(const FlowNode& node, const std::vector<NodeId>& nodes) {
+  const robot::Scope scope = ScopeOf(node);
+  std::vector<Value> values;
+  for (const ExprId id : node.act->values) values.push_back(evaluator_.Evaluate(id, scope));
+  for (const NodeId id : nodes) {
+    const Node& message = graph_[id];
+    const std::string label = message.label;
+    if (values.size() != message.payload.size()) {
+      return Wrong{Kind::kProcessPayload, node.span,
+                   fmt::format("`{}` carries {} value{}, but {} {} sent", label, message.payload.size(),
+                               message.payload.size() == 1 ? "" : "s", values.size(),
+                               values.size() == 1 ? "is" : "are"),
+                   ""};
+    }
+    const TermId known = KnownAt(node);
+    expr::Substitution given;
+    for (size_t i = 0; i < values.size(); ++i) {
+      Value asked = message.payload[i];
+      if (values[i].kind == ValueKind::kError || asked.kind == ValueKind::kError) continue;
+      const Span span = evaluator_.SpanOf(node.act->values[i]);
+      if (asked.kind != values[i].kind || asked.terms.size() != values[i].terms.size() ||
+          !robot::Evaluator::Agree(asked, values[i])) {
+        return Wrong{Kind::kProcessPayload, span,
+                     fmt::format("`{}` carries {}, but this is {}", label, robot::Describe(asked),
+                                 robot::Describe(values[i])),
+                     ""};
+      }
+      if (!message.names[i].empty()) {
+        for (size_t k = 0; k < asked.terms.size(); ++k) given.emplace(asked.terms[k], values[i].terms[k]);
+        continue;
+      }
+      const TermId same = Equal(values[i], asked);
+      if (Refuted(known, same)) {
+        return Wrong{Kind::kProcessPayload, span,
+                     fmt::format("`{}` carries another value in the choreography", label), ""};
+      }
+      Need(span, fmt::format("whether `{}` carries the value of the choreography", label), known, same, {id});
+    }
+    const TermId refinement = expr::Substitute(arena_, message.refinement, given);
+    if (Refuted(known, refinement)) {
+      return Wrong{Kind::kProcessPayload, node.span,
+                   fmt::format("what `{}` carries is not as the choreography promises", label), ""};
+    }
+    Need(node.span, fmt::format("whether `{}` carries what the choreography promises", label), known,
+         refinement, {id});
+  }
+  return std::nullopt;
+}
+
+std::optional<Wrong> Compare::ReceivePayload(const Case& c, const std::vector<NodeId>& nodes) {
+  if (c.names.empty()) return std::nullopt;
+  Binding binding;
+  binding.constant = !several_.contains(&c);
+  const Node& first = graph_[nodes[0]];
+  for (const NodeId id : nodes) {
+    const Node& message = graph_[id];
+    if (message.payload.size() != c.names.size()) {
+      return Wrong{Kind::kProcessPayload, c.span,
+                   fmt::format("`{}` carries {} value{}, but {} {} named", message.label,
+                               message.payload.size(), message.payload.size() == 1 ? "" : "s", c.names.size(),
+                               c.names.size() == 1 ? "is" : "are"),
+                   ""};
+    }
+    for (size_t i = 0; i < c.names.size(); ++i) {
+      const Value& value = message.payload[i];
+      binding.constant =
+          binding.constant && robot::IsConstant(arena_, value) && value.terms == first.payload[i].terms;
+      if (value.kind == first.payload[i].kind && value.dimension == first.payload[i].dimension) continue;
+      return Wrong{Kind::kProcessPayload, c.span,
+                   fmt::format("`{}` carries different kinds of values", message.label), ""};
+    }
+  }
+  const auto before = bindings_.find(&c);
+  const bool again = before != bindings_.end();
+  if (binding.constant) {
+    binding.values = first.payload;
+    binding.known = arena_.True();
+    for (size_t i = 0; again && i < c.names.size(); ++i) {
+      if (before->second.values[i].terms != binding.values[i].terms) restarts_ = true;
+    }
+  } else if (again && !before->second.constant) {
+    binding.values = before->second.values;
+  } else {
+    restarts_ = restarts_ || again;
+    for (Value value : first.payload) {
+      for (size_t k = 0; k < value.terms.size(); ++k)
+        value.terms[k] =
+            arena_.FreshConstant(c.names[binding.values.size()].text, arena_.sort_of(value.terms[k]));
+      value.squared.reset();
+      binding.values.push_back(std::move(value));
+    }
+  }
+  if (restarts_) several_.insert(&c);
+  // What is known: one of the messages came.
+  std::vector<TermId> ways;
+  if (again && !binding.constant) ways.push_back(before->second.known);
+  for (const NodeId id : nodes) {
+    if (binding.constant) break;
+    const Node& message = graph_[id];
+    expr::Substitution names;
+    std::vector<TermId> known;
+    for (size_t i = 0; i < c.names.size(); ++i) {
+      if (message.names[i].empty()) {
+        known.push_back(Equal(binding.values[i], message.payload[i]));
+      } else {
+        for (size_t k = 0; k < message.payload[i].terms.size(); ++k)
+          names.emplace(message.payload[i].terms[k], binding.values[i].terms[k]);
+      }
+    }
+    known.push_back(expr::Substitute(arena_, message.refinement, names));
+    ways.push_back(arena_.And(known));
+  }
+  if (!binding.constant) binding.known = arena_.Or(ways);
+  bindings_[&c] = std::move(binding);
+  return std::nullopt;
+}
+
+// -- motions
+
+std::optional<Wrong> Compare::Moves(const FlowNode& node, const std::vector<NodeId>& nodes) {
+  const auto done = calls_.Resolve(flow_.robot, node.act->motion, ScopeOf(node));
+  if (!done) return std::nullopt;  // said already
+  for (const NodeId id : nodes) {
+    for (const Part& part : graph_[id].parts) {
+      if (part.robot != flow_.robot || part.instance == *done) continue;
+      if (auto wrong = Refines(node, graph_.instances[*done], graph_.instances[part.instance], id))
+        return wrong;
+    }
+  }
+  return std::nullopt;
+}
+
+// The same motion with the same arguments; or [Sub-Motion]: weaker needs, stronger promises, less space, and
+// a duration that fits wherever that of the other one fits.
+std::optional<Wrong> Compare::Refines(const FlowNode& node, const Instance& done, const Instance& asked,
+                                      NodeId at) {
+  const Span span = node.act->motion.motion.span;
+  const TermId known = KnownAt(node);
+  if (done.motion == asked.motion) {
+    for (size_t i = 0; i < done.args.size(); ++i) {
+      const std::string& name = done.motion->params[i].name.text;
+      const TermId same = Equal(done.args[i], asked.args[i]);
+      if (Refuted(known, same)) {
+        return Wrong{
+            Kind::kProcessArgument, span,
+            fmt::format("`{}` is another one in the choreography: there it does `{}`", name, asked.text), ""};
+      }
+      Need(span, fmt::format("whether `{}` is as in the choreography", name), known, same, {at});
+    }
+    return std::nullopt;
+  }
+  const Duration& d = done.duration;
+  const Duration& a = asked.duration;
+  const auto within = [](const Duration& inner, const Duration& outer) {
+    return outer.least <= inner.least && (!outer.most || (inner.most && *inner.most <= *outer.most));
+  };
+  const bool fits = d.interruptible == a.interruptible && (d.interruptible ? within(a, d) : within(d, a));
+  if (!fits) {
+    return Wrong{
+        Kind::kProcessMotion, span,
+        fmt::format("the choreography asks for `{}`, for which `{}` cannot stand", asked.text, done.text),
+        "another motion can stand for it if it may be interrupted, too, and takes a time that fits"};
+  }
+  const robot::Contract& x = done.contract;
+  const robot::Contract& c = asked.contract;
+  const std::string what = fmt::format("whether `{}` can stand for `{}`", done.text, asked.text);
+  for (size_t i = 0; i < x.modifies.size(); ++i) {
+    if (!x.modifies[i] || c.modifies[i]) continue;
+    return Wrong{Kind::kProcessMotion, span,
+                 fmt::format("the choreography asks for `{}`, which leaves `{}` as it is", asked.text,
+                             graph_.BodyOf(flow_.robot).states[i].name.text),
+                 ""};
+  }
+  Need(span, what, arena_.And(known, c.pre), x.pre, {at});
+  Need(span, what, arena_.And(known, c.assume), x.assume, {at});
+  Need(span, what, arena_.And(known, x.during), c.during, {at});
+  Need(span, what, arena_.And(known, x.post), c.post, {at});
+  if (x.footprint && c.footprint) {
+    const robot::Vector& p = graph_.world->point;
+    Need(span, what, arena_.And({known, x.during, robot::Contains(arena_, *x.footprint, p)}),
+         robot::Contains(arena_, *c.footprint, p), {at});
+  }
+  return std::nullopt;
+}
+
+}  // namespace rondo::choreo

@@ -1,0 +1,203 @@
+#include "choreo/process/flow.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+namespace rondo::choreo {
+namespace {
+
+using diag::Kind;
+using diag::Span;
+
+class Builder {
+ public:
+  Builder(const ProcessDef& process, const Graph& graph, Declarations& declarations)
+      : process_(process),
+        graph_(graph),
+        declarations_(declarations),
+        diagnostics_(declarations.evaluator().diagnostics()) {}
+
+  std::optional<Flow> Run() {
+    const size_t errors = diagnostics_.errors();
+    flow_.source = &process_;
+    flow_.robot = Robot(process_.robot);
+    const FlowId end = Add(FlowKind::kExit, process_.span, nullptr);
+    flow_.start = Block(process_.body, end);
+    if (diagnostics_.errors() == errors) CheckLoops();
+    if (diagnostics_.errors() > errors) return std::nullopt;
+    return std::move(flow_);
+  }
+
+ private:
+  FlowId Add(FlowKind kind, Span span, const Act* act) {
+    FlowNode node;
+    node.kind = kind;
+    node.span = span;
+    node.act = act;
+    node.bindings = bindings_;
+    flow_.nodes.push_back(std::move(node));
+    return FlowId(flow_.nodes.size() - 1);
+  }
+
+  RobotId Robot(const Name& name) {
+    if (const auto id = graph_.Find(name.text)) return *id;
+    std::vector<std::string> names;
+    for (const Name& r : graph_.robots) names.push_back(r.text);
+    declarations_.Undeclared(name, "robot", names);
+    return {};
+  }
+
+  FlowId Block(const std::vector<Act>& acts, FlowId next) {
+    for (size_t i = acts.size(); i-- > 0;) {
+      const bool ends = acts[i].kind == ActKind::kLoop || acts[i].kind == ActKind::kContinue ||
+                        acts[i].kind == ActKind::kExit;
+      if (ends && i + 1 < acts.size()) {
+        diagnostics_.Report(Kind::kChoreoUnreachable, acts[i + 1].span, "this step is never reached")
+            .At(acts[i].span, "what stands here never goes on");
+      }
+      next = Step(acts[i], next);
+    }
+    return next;
+  }
+
+  // A loop's head is an `if` whose branches are known later.
+  FlowId Head(const Act& act) { return Add(FlowKind::kIf, act.span, &act); }
+
+  void Close(FlowId head, FlowId next, FlowId otherwise) {
+    flow_.nodes[head.index()].next = next;
+    flow_.nodes[head.index()].otherwise = otherwise;
+  }
+
+  FlowId Step(const Act& act, FlowId next) {
+    switch (act.kind) {
+      case ActKind::kSend: {
+        const FlowId id = Add(FlowKind::kSend, act.span, &act);
+        flow_.nodes[id.index()].peer = Robot(act.peer);
+        flow_.nodes[id.index()].next = next;
+        return id;
+      }
+      case ActKind::kReceive:
+        return Receive(act, next);
+      case ActKind::kMotion:
+      case ActKind::kAssign: {
+        const FlowId id =
+            Add(act.kind == ActKind::kMotion ? FlowKind::kMove : FlowKind::kAssign, act.span, &act);
+        flow_.nodes[id.index()].next = next;
+        return id;
+      }
+      case ActKind::kIf: {
+        const FlowId id = Head(act);
+        Close(id, Block(act.body, next), Block(act.otherwise, next));
+        return id;
+      }
+      case ActKind::kWhile: {
+        const FlowId id = Head(act);
+        Close(id, Block(act.body, id), next);
+        return id;
+      }
+      case ActKind::kLoop: {
+        const FlowId id = Head(act);
+        const FlowId body = Block(act.body, id);
+        Close(id, body, body);
+        return id;
+      }
+      case ActKind::kRec: {
+        const FlowId id = Head(act);
+        recursions_.emplace_back(act.label.text, id);
+        const FlowId body = Block(act.body, next);
+        recursions_.pop_back();
+        Close(id, body, body);
+        return id;
+      }
+      case ActKind::kContinue:
+        return Continue(act);
+      case ActKind::kExit:
+        return Add(FlowKind::kExit, act.span, &act);
+    }
+    return next;
+  }
+
+  FlowId Receive(const Act& act, FlowId next) {
+    const FlowId id = Add(FlowKind::kReceive, act.span, &act);
+    std::vector<FlowCase> cases;
+    for (const Case& c : act.cases) {
+      if (c.peer.text.empty()) {
+        diagnostics_.Report(Kind::kProcessPeer, c.span, "nothing says from whom this comes")
+            .Help("write `receive from a { ... }`, or `a.label => ...` in each case");
+        continue;
+      }
+      FlowCase result{&c, Robot(c.peer), {}};
+      for (const FlowCase& other : cases) {
+        if (other.peer != result.peer || other.source->label.text != c.label.text) continue;
+        diagnostics_.Report(Kind::kChoreoDuplicate, c.span, fmt::format("`{}` has two cases", c.label.text))
+            .At(other.source->span, "the other one");
+      }
+      bindings_.push_back(&c);
+      result.next = Block(c.body, next);
+      bindings_.pop_back();
+      cases.push_back(result);
+    }
+    flow_.nodes[id.index()].cases = std::move(cases);
+    return id;
+  }
+
+  FlowId Continue(const Act& act) {
+    for (size_t i = recursions_.size(); i-- > 0;) {
+      if (recursions_[i].first == act.label.text) return recursions_[i].second;
+    }
+    std::vector<std::string> names;
+    for (const auto& [name, id] : recursions_) names.push_back(name);
+    declarations_.Undeclared(act.label, "recursion", names);
+    return FlowId(0);
+  }
+
+  // From no branch of a loop may control come back without a step.
+  void CheckLoops() {
+    enum class Mark : uint8_t { kNew, kOpen, kDone };
+    std::vector<Mark> marks(flow_.nodes.size(), Mark::kNew);
+    for (size_t i = 0; i < flow_.nodes.size(); ++i) {
+      std::vector<std::pair<FlowId, size_t>> path{{FlowId(i), 0}};
+      if (marks[i] != Mark::kNew) continue;
+      marks[i] = Mark::kOpen;
+      while (!path.empty()) {
+        auto& [id, child] = path.back();
+        const FlowNode& node = flow_[id];
+        const bool silent = node.kind == FlowKind::kIf || node.kind == FlowKind::kAssign;
+        const size_t children = !silent ? 0 : node.kind == FlowKind::kIf ? 2 : 1;
+        if (child >= children) {
+          marks[id.index()] = Mark::kDone;
+          path.pop_back();
+          continue;
+        }
+        const FlowId next = child++ == 0 ? node.next : node.otherwise;
+        if (marks[next.index()] == Mark::kOpen) {
+          diagnostics_
+              .Report(Kind::kChoreoUnguarded, flow_[next].span, "this loop may go round without a step")
+              .Help("put a message or a motion on every way back to its beginning");
+          return;
+        }
+        if (marks[next.index()] == Mark::kNew) {
+          marks[next.index()] = Mark::kOpen;
+          path.emplace_back(next, 0);
+        }
+      }
+    }
+  }
+
+  const ProcessDef& process_;
+  const Graph& graph_;
+  Declarations& declarations_;
+  diag::Diagnostics& diagnostics_;
+  Flow flow_;
+  std::vector<const Case*> bindings_;
+  std::vector<std::pair<std::string, FlowId>> recursions_;
+};
+
+}  // namespace
+
+std::optional<Flow> BuildFlow(const ProcessDef& process, const Graph& graph, Declarations& declarations) {
+  return Builder(process, graph, declarations).Run();
+}
+
+}  // namespace rondo::choreo

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "choreo/graph/declarations.h"
+#include "choreo/project/project.h"
+
+/// Does each process do what its projection asks of it? (Definition 4.10 and Table 1 of the paper.)
+namespace rondo::choreo {
+
+/// A choreography with the local types of all its robots.
+struct Typed {
+  Graph* graph;  ///< gets the motions that only processes do
+  std::vector<LocalType> types;
+};
+
+/// What the structure leaves open: that `goal` holds wherever `hypothesis` does, for robots that are in one
+/// of the nodes `at`.
+struct SideCondition {
+  diag::Span span;
+  std::string what;  ///< "whether the choreography offers this alternative", ...
+  expr::TermId hypothesis, goal;
+  std::vector<NodeId> at;
+};
+
+/// Types every process of the module. Reports, for each process, the first step that its projection does not
+/// allow: a message to or from the wrong robot, with the wrong label or payload, a case that is missing,
+/// another motion or another argument, an alternative that the choreography does not offer. Follows processes
+/// and local types together, each pair once. The conditions that need a solver are returned; a process is
+/// well-typed if all of them are valid.
+std::vector<SideCondition> CheckProcesses(const Module& module, const std::vector<Typed>& typed,
+                                          Declarations& declarations);
+
+}  // namespace rondo::choreo

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "robot/model/evaluate.h"
+#include "robot/syntax/ast.h"
+
+namespace rondo::robot {
+
+/// A state variable or an input, with the range that it never leaves (closed; SI units).
+struct Variable {
+  Name name;
+  lang::Dimension dimension;
+  TermId term;
+  std::optional<TermId> least, most;
+};
+
+/// A robot in a world: its variables, frames and shapes as terms. The variable `x` of the robot `cart` is the
+/// real constant `cart.x`.
+struct Body {
+  Name name;
+  const RobotDef* type = nullptr;
+  std::optional<size_t> parent;  ///< the body whose mount it stands on
+  Pose self;                     ///< where it was put, in the world
+  std::vector<Variable> states;
+  std::vector<Variable> inputs;                    ///< those that nothing in the world determines
+  std::vector<std::optional<TermId>> derivatives;  ///< of the states, if its dynamics are known
+  std::optional<Shape> body;                       ///< the space it occupies; nothing is known without it
+  std::optional<Shape> hull;                       ///< coarser
+  std::map<std::string, Pose, std::less<>> mounts;
+  Scope scope;  ///< what its own expressions may use
+
+  /// Every number that its shapes depend on, its own or of those that carry it.
+  std::set<TermId> coupling;
+};
+
+struct Obstacle {
+  Name name;
+  Shape shape;
+};
+
+/// Robots, obstacles and the rest. Does not move in memory: scopes refer to each other.
+struct World {
+  const WorldDef* source = nullptr;
+  std::vector<Body> bodies;  ///< in the order of the source
+  std::vector<Obstacle> obstacles;
+  std::vector<Variable> environment;
+  Scope scope;        ///< `world`, robots, parts of the environment
+  Scope point_scope;  ///< these and a point of the world: `x`, `y`, `z`, `here`
+  Vector point;
+  TermId clock;  ///< time since a motion began, in seconds
+
+  World() = default;
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+};
+
+/// What one motion promises, for one robot and given arguments. Formulas are about the state; `during`,
+/// `assume` and `footprint` may depend on the clock.
+struct Contract {
+  TermId pre, assume, during, post;
+  std::optional<Shape> footprint;  ///< of the body, if it is not stated
+  std::vector<bool> modifies;      ///< by state
+};
+
+using RobotTypes = std::map<std::string, const RobotDef*, std::less<>>;
+
+/// Reports names, units, mounts; always returns a world, with what could be understood.
+std::unique_ptr<World> BuildWorld(const WorldDef& source, const RobotTypes& types, Evaluator& evaluator);
+
+/// Reports what is wrong in a robot type whatever world it is used in.
+void CheckRobot(const RobotDef& type, Evaluator& evaluator);
+
+/// The names of the parameters of a motion with their values. `args`: by parameter; of kind kError: the
+/// default. Reports values of the wrong dimension at `spans`.
+Scope MotionScope(const Body& body, const MotionDef& motion, const std::vector<Value>& args,
+                  const std::vector<diag::Span>& spans, Evaluator& evaluator);
+
+/// The contract under such names.
+Contract ContractOf(const Body& body, const MotionDef& motion, const Scope& scope, Evaluator& evaluator);
+
+}  // namespace rondo::robot

@@ -1,0 +1,126 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "lang/syntax_tree.h"
+
+/// The syntax of robot types and worlds, common to all languages that move robots (docs/motion.md).
+namespace rondo::robot {
+
+using lang::ExprId;
+
+struct Name {
+  std::string text;
+  diag::Span span;
+};
+
+/// `T : time = 5 s`: a parameter of a robot or motion. Dimension and default may be missing.
+struct Param {
+  Name name;
+  Name dimension;  ///< empty if it is not stated
+  ExprId value;
+};
+
+struct ParamGroup {
+  diag::Span span;
+  std::vector<Param> params;
+};
+
+/// `state x, y : length in [-10 m, 10 m]`, and the same for `input` and `output`.
+struct StateGroup {
+  diag::Span span;
+  Name keyword;
+  std::vector<Name> names;
+  Name dimension;
+  ExprId least, most;  ///< may be missing
+};
+
+/// `frame base = self * rotate_z(c)` or `mount top = ...`.
+struct FrameDef {
+  Name keyword;
+  Name name;
+  ExprId value;
+};
+
+/// `body cylinder(base, 0.1 m, 0.2 m)` or `hull ...`.
+struct ShapeDef {
+  Name keyword;
+  ExprId value;
+};
+
+/// `x' = v * cos(theta)`
+struct Derivative {
+  Name variable;
+  ExprId value;
+};
+
+struct DynamicsDef {
+  diag::Span span;
+  std::vector<Derivative> derivatives;
+};
+
+/// One line of a contract: `pre`, `assume`, `during`, `post`, `footprint`, `region`, `guarantee` with an
+/// expression, or `modifies` with names.
+struct Clause {
+  Name keyword;
+  std::vector<Name> names;
+  ExprId value;
+};
+
+/// `motion Move(d : length, T = 5 s) noninterruptible [T, T] { ... }`
+struct MotionDef {
+  diag::Span span;
+  Name name;
+  std::vector<Param> params;
+  bool interruptible = false;
+  ExprId least, most;  ///< of the duration
+  std::vector<Clause> clauses;
+};
+
+using RobotItem = std::variant<ParamGroup, StateGroup, FrameDef, ShapeDef, DynamicsDef, MotionDef>;
+
+struct RobotDef {
+  diag::Span span;
+  Name name;
+  std::vector<RobotItem> items;
+};
+
+/// `d = 2 m`, or an argument without a name.
+struct Argument {
+  Name name;
+  ExprId value;
+};
+
+/// `cart: Cart(height = 9 cm) at (0 m, 0 m, 0 m)`, or `arm: Moveo on cart.top`. Without either it stands at
+/// the origin.
+struct Component {
+  Name name;
+  Name type;
+  std::vector<Argument> args;  ///< parameters of the type, each by name
+  ExprId place;                ///< `at`: a position in the world, or a frame; may be missing
+  Name parent, mount;          ///< `on`; empty if it stands in the world
+};
+
+/// `obstacle wall: box(world, (0 m, 0 m, 0 m), (1 m, 2 m, 1 m))`
+struct ObstacleDef {
+  Name name;
+  ExprId shape;
+};
+
+/// `environment wind { output gust : speed in [-1 m/s, 1 m/s] }`
+struct EnvironmentDef {
+  Name name;
+  std::vector<StateGroup> outputs;
+};
+
+struct WorldDef {
+  diag::Span span;
+  Name name;
+  std::vector<Component> components;
+  std::vector<ObstacleDef> obstacles;
+  std::vector<EnvironmentDef> environments;
+};
+
+}  // namespace rondo::robot
