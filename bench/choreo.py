@@ -27,7 +27,7 @@ def measure(command):
 
 def rounds(count):
     """A choreography of `count` rounds with motions, messages, a choice and threads: 10 nodes each."""
-    text = ["robot R {", "  motion Idle() interruptible [0 s, inf) {}", "  motion Go(T = 2 s) noninterruptible [T, T] {}", "}",
+    text = ["robot R {", "  state x : length in [-9 m, 9 m]", "  motion Idle() interruptible [0 s, inf) {}", "  motion Go(T = 2 s) noninterruptible [T, T] {}", "}",
             "world W { a: R b: R }", "choreography C in W {"]
     for i in range(count):
         text += [f"  {{ a: Go(), b: Idle() }}", f"  a -> b: there{i}()",

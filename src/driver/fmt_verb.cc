@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 
 #include "base/check.h"
 #include "base/file.h"
+#include "choreo/syntax/format.h"
+#include "choreo/syntax/parser.h"
 #include "driver/exit_status.h"
 #include "driver/load.h"
 #include "driver/terminal.h"
@@ -21,26 +24,52 @@ struct Options {
   bool print = false;
 };
 
-int FormatFile(const std::string& file, const Options& options) {
-  if (std::filesystem::path(file).extension() == ".rondo") {
-    PrintFailure(fmt::format("`{}`: only Koord programs and specifications are formatted so far", file));
-    return kRejected;
-  }
-  Session session;
+// The canonical text of a file; nothing if it cannot be read or has errors, which are in the session then.
+// Never one that does not mean the same.
+std::optional<std::string> FormatKoord(const std::string& file, Session& session) {
   const auto program = Load({file, {}, false}, session);
-  if (!program) return kRejected;
-  if (session.diagnostics.has_errors()) {
-    PrintDiagnostics(session.sources, session.diagnostics);
-    return kRejected;
-  }
+  if (!program || session.diagnostics.has_errors()) return std::nullopt;
   const std::string text = koord::Format(session.sources, *program);
-  // Never write what does not mean the same.
   Session again;
   koord::Program reread;
   koord::Parse(again.sources, again.sources.Add(file, text), reread, again.diagnostics);
   CHECK(!again.diagnostics.has_errors() && koord::Skeleton(reread) == koord::Skeleton(*program))
       << "formatting would change " << file;
   CHECK(reread.comments.size() == program->comments.size()) << "formatting would lose a comment of " << file;
+  return text;
+}
+
+std::optional<std::string> FormatMotion(const std::string& file, Session& session) {
+  const auto source = ReadSource(file, session);
+  if (!source) return std::nullopt;
+  choreo::Module module;
+  choreo::Parse(session.sources, *source, module, session.diagnostics);
+  if (session.diagnostics.has_errors()) return std::nullopt;
+  const lang::TokenStream tokens = choreo::Tokens(session.sources, *source, session.diagnostics);
+  const std::string text = choreo::Format(session.sources, *source, tokens);
+  Session again;
+  const diag::FileId other = again.sources.Add(file, text);
+  const lang::TokenStream reread = choreo::Tokens(again.sources, other, again.diagnostics);
+  const auto same = [](const auto& a, const auto& b) { return a.text == b.text; };
+  CHECK(std::ranges::equal(tokens.tokens, reread.tokens, same) &&
+        std::ranges::equal(tokens.comments, reread.comments, same))
+      << "formatting would change " << file;
+  return text;
+}
+
+int FormatFile(const std::string& file, const Options& options) {
+  Session session;
+  const std::string extension = std::filesystem::path(file).extension().string();
+  if (extension == ".chor" || extension == ".rosl") {
+    PrintFailure(fmt::format("`{}`: files of the original tool are not formatted", file));
+    return kRejected;
+  }
+  const auto formatted = extension == ".rondo" ? FormatMotion(file, session) : FormatKoord(file, session);
+  if (!formatted) {
+    PrintDiagnostics(session.sources, session.diagnostics);
+    return kRejected;
+  }
+  const std::string& text = *formatted;
   if (options.print) {
     Print(text);
     return kEstablished;
@@ -63,8 +92,10 @@ int FormatFile(const std::string& file, const Options& options) {
 
 void AddFormatVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("fmt", "write Koord programs in their canonical form");
-  verb->add_option("FILE", options->files, "programs and specifications, rewritten in place")->required();
+  CLI::App* verb = app.add_subcommand("fmt", "write programs and choreographies in their canonical form");
+  verb->add_option("FILE", options->files,
+                   "Koord programs, specifications, robots and choreographies, rewritten in place")
+      ->required();
   verb->add_flag("--check", options->check, "change nothing; fail if a file is not formatted");
   verb->add_flag("--stdout", options->print, "print the result instead of writing it");
   verb->footer("example: rondo fmt --check examples/koord/*.koord");

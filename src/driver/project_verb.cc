@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "choreo/draw/automaton.h"
 #include "choreo/project/project.h"
 #include "choreo/wellformed/wellformed.h"
 #include "driver/exit_status.h"
@@ -20,6 +21,7 @@ using choreo::Action;
 struct Options {
   std::string file;
   std::string robot;
+  std::string svg;
   bool json = false;
 };
 
@@ -50,7 +52,7 @@ int Run(const Options& options) {
   const auto motion = LoadMotion({options.file}, {}, session);
   if (motion == nullptr) return kRejected;
   nlohmann::json list = nlohmann::json::array();
-  std::string text;
+  std::string text, picture;
   std::vector<std::string> robots;
   for (const choreo::Graph& graph : motion->graphs) {
     choreo::CheckWellFormed(graph, session.diagnostics);
@@ -61,6 +63,7 @@ int Run(const Options& options) {
       const auto type = choreo::Project(graph, motion->module.exprs, choreo::RobotId(r), session.diagnostics);
       if (session.diagnostics.errors() > errors) continue;
       list.push_back(ToJson(graph, motion->module.exprs, type));
+      picture = choreo::DrawAutomaton(graph, motion->module.exprs, type);
       text += fmt::format("{} in {}\n{}", robots.back(), graph.source->name.text,
                           choreo::ToText(graph, motion->module.exprs, type));
     }
@@ -71,6 +74,13 @@ int Run(const Options& options) {
     PrintFailure(fmt::format("there is no robot `{}`{}", options.robot,
                              near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
     return kRejected;
+  }
+  if (good && !options.svg.empty()) {
+    if (list.size() != 1) {
+      PrintFailure("a picture shows one robot: name it behind the file");
+      return kUsage;
+    }
+    return WritePicture(options.svg, picture);
   }
   if (options.json) {
     const nlohmann::json diagnostics = DiagnosticsToJson(session.sources, session.diagnostics);
@@ -93,9 +103,11 @@ void AddProjectVerb(CLI::App& app, int& status) {
       app.add_subcommand("project", "show what each robot of a choreography does: its local type");
   verb->add_option("FILE", options->file, "robots, a world and choreographies (`.rondo`)")->required();
   verb->add_option("ROBOT", options->robot, "only this robot");
+  verb->add_option("--svg", options->svg, "write the automaton of one robot as a picture to this file");
   verb->add_flag("--json", options->json, "the automata as JSON on standard output");
   verb->footer(
-      "example: rondo project examples/choreo/handover.rondo arm\n\n"
+      "example: rondo project examples/choreo/handover.rondo arm\n"
+      "         rondo project examples/choreo/handover.rondo arm --svg arm.svg\n\n"
       "Each line is a step: the state, what the robot does or what happens to it, and the state behind it.");
   verb->callback([options, &status] { status = Run(*options); });
 }

@@ -7,6 +7,9 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "base/file.h"
+#include "driver/exit_status.h"
+
 namespace rondo::driver {
 
 void Print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
@@ -52,6 +55,16 @@ nlohmann::json DiagnosticsToJson(const diag::SourceSet& sources, const diag::Dia
   nlohmann::json list = nlohmann::json::array();
   for (const diag::Diagnostic& d : diagnostics.Sorted()) list.push_back(diag::RenderJson(sources, d));
   return list;
+}
+
+int WritePicture(const std::string& path, const std::string& svg) {
+  const auto written = base::WriteFileAtomically(path, svg);
+  if (!written.ok()) {
+    PrintFailure(fmt::format("cannot write `{}`: {}", path, written.error().message));
+    return kRejected;
+  }
+  Print(fmt::format("wrote {}\n", path));
+  return kEstablished;
 }
 
 void PrintFailure(const std::string& message) { PrintError(fmt::format("rondo: {}\n", message)); }

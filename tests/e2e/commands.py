@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from xml.etree import ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RONDO = str(pathlib.Path(sys.argv[1]).resolve())
@@ -74,18 +75,46 @@ done = rondo("solve", "--solver", "no-such-solver", str(polynomial))
 check("a solver that is not there", done.returncode == 3 and "no-such-solver" in done.stdout, done.stdout + done.stderr)
 check("no script", rondo("solve", "missing.smt2").returncode == 1)
 
-# Choreographies: the examples are well-formed and have projections; a robot that is not there; a file that is not.
+# Choreographies: the examples get the verdict that their first line states, and have projections; their generator works; a robot that is not there; a file that is not.
 for example in sorted((ROOT / "examples/choreo").glob("*.rondo")):
-    check(f"check {example.name}", rondo("check", str(example)).returncode == 0)
+    wanted = example.read_text().split("\n", 1)[0].removeprefix("# check: ").split()
+    done = rondo("check", "--json", str(example))
+    found = {d["kind"] for d in json.loads(done.stdout)["diagnostics"]}
+    check(f"check {example.name}", found == set(wanted) - {"ok"} and (done.returncode == 0) == (wanted == ["ok"]), done.stdout)
+    if wanted != ["ok"]:
+        continue
     done = rondo("project", "--json", str(example))
     check(f"project {example.name}", done.returncode == 0 and len(json.loads(done.stdout)["types"]) >= 2, done.stdout)
+for models in sorted((ROOT / "models").glob("*.rondo")):
+    done = rondo("check", str(models))
+    check(f"check {models.name}", done.returncode == 0 and done.stdout + done.stderr == "", done.stdout + done.stderr)
+for arguments in (["3"], ["2", "3"], ["3", "2", "--together"]):
+    lanes = FOLDER / "examples" / "choreo" / "lanes.rondo"
+    lanes.parent.mkdir(parents=True, exist_ok=True)
+    done = subprocess.run([sys.executable, ROOT / "examples/choreo/lanes.py", *arguments], capture_output=True, text=True)
+    lanes.write_text(done.stdout.replace("../../models", str(ROOT / "models")))
+    done = rondo("check", str(lanes))
+    check(f"lanes {arguments}", done.returncode == 0 and done.stdout + done.stderr == "", done.stdout + done.stderr)
 shuttle = "examples/choreo/shuttle.rondo"
 done = rondo("project", shuttle, "green")
 check("project one robot", "receive cart.arrive" in done.stdout and "green in Shuttle" in done.stdout, done.stdout)
 done = rondo("project", shuttle, "gren")
 check("project nobody", done.returncode == 1 and "did you mean `green`" in done.stderr, done.stderr)
 check("project nothing", rondo("project", "missing.rondo").returncode == 1)
-check("no formatter yet", "only Koord programs" in rondo("fmt", "--check", shuttle).stderr)
+picture = FOLDER / "picture.svg"
+done = rondo("graph", shuttle, "--svg", str(picture))
+check("a chart", done.returncode == 0 and "again from 1" in picture.read_text(), done.stdout + done.stderr)
+ElementTree.parse(picture)
+done = rondo("project", shuttle, "green", "--svg", str(picture))
+check("an automaton", done.returncode == 0 and "receive cart.arrive" in picture.read_text(), done.stdout + done.stderr)
+ElementTree.parse(picture)
+check("a picture of several", rondo("project", shuttle, "--svg", str(picture)).returncode == 2)
+check("a picture nowhere", rondo("graph", shuttle, "--svg", str(FOLDER)).returncode == 1)
+nodes = json.loads(rondo("graph", "--json", shuttle).stdout)["graphs"][0]["nodes"]
+check("a list of nodes", {n["kind"] for n in nodes} == {"message", "motion", "choice", "merge", "fork", "join", "end"}, str(nodes))
+check("no such choreography", "did you mean `Shuttle`" in rondo("graph", shuttle, "--choreography", "Shutle").stderr)
+check("formatted", rondo("fmt", "--check", *map(str, (ROOT / "models").glob("*.rondo")), *map(str, (ROOT / "examples/choreo").glob("*.rondo"))).returncode == 0)
+check("no formatter of the original files", "not formatted" in rondo("fmt", "--check", "src/choreo/syntax/testdata/equations/good.chor").stderr)
 
 # The cache: the second run finds the proofs; a changed program does not.
 cached = rondo("prove", LINEFORM)

@@ -13,18 +13,6 @@ namespace {
 using diag::Kind;
 using Set = std::set<NodeId>;
 
-std::string Describe(const Graph& graph, const Action& a) {
-  switch (a.kind) {
-    case Action::Kind::kSend:
-      return fmt::format("send {}.{}", graph.NameOf(a.peer), a.label);
-    case Action::Kind::kReceive:
-      return fmt::format("receive {}.{}", graph.NameOf(a.peer), a.label);
-    case Action::Kind::kMove:
-      return fmt::format("move {}", a.label);
-  }
-  return "";
-}
-
 /// The subset construction over what concerns one robot.
 class Projection {
  public:
@@ -221,6 +209,18 @@ class Projection {
 };
 
 }  // namespace
+
+std::string Describe(const Graph& graph, const Action& a) {
+  switch (a.kind) {
+    case Action::Kind::kSend:
+      return fmt::format("send {}.{}", graph.NameOf(a.peer), a.label);
+    case Action::Kind::kReceive:
+      return fmt::format("receive {}.{}", graph.NameOf(a.peer), a.label);
+    case Action::Kind::kMove:
+      return fmt::format("move {}", a.label);
+  }
+  return "";
+}
 
 LocalType Project(const Graph& graph, const lang::ExprPool& pool, RobotId robot,
                   diag::Diagnostics& diagnostics) {

@@ -40,6 +40,9 @@ struct LocalType {
 LocalType Project(const Graph& graph, const lang::ExprPool& pool, RobotId robot,
                   diag::Diagnostics& diagnostics);
 
+/// `send arm.go`, `move Idle()`
+std::string Describe(const Graph& graph, const Action& action);
+
 /// One line for each action: `3: receive arm.done -> 4`.
 std::string ToText(const Graph& graph, const lang::ExprPool& pool, const LocalType& type);
 

@@ -9,7 +9,6 @@ namespace rondo::choreo {
 namespace {
 
 using diag::Kind;
-using diag::Span;
 using lang::TokenKind;
 
 class EquationParser : public LegacyExprParser {

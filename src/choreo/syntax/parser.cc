@@ -276,14 +276,18 @@ bool IsReservedWord(std::string_view word) {
   return Contains(kWords, word) || robot::IsRobotWord(word) || lang::FindUnit(word) != nullptr;
 }
 
-void Parse(const diag::SourceSet& sources, diag::FileId file, Module& module,
-           diag::Diagnostics& diagnostics) {
+lang::LexerOptions RondoLexer() {
   lang::LexerOptions options;
   options.indentation = false;
   options.bar = true;
   options.half_open = true;
   options.prime = true;
-  const lang::TokenStream stream = lang::Lex(sources, file, options, diagnostics);
+  return options;
+}
+
+void Parse(const diag::SourceSet& sources, diag::FileId file, Module& module,
+           diag::Diagnostics& diagnostics) {
+  const lang::TokenStream stream = lang::Lex(sources, file, RondoLexer(), diagnostics);
   module.comments.insert(module.comments.end(), stream.comments.begin(), stream.comments.end());
   Parser(stream, module, diagnostics).ParseModule();
 }

@@ -11,7 +11,6 @@ namespace rondo::robot {
 
 using diag::Kind;
 using diag::Span;
-using expr::Elementary;
 using expr::Rational;
 using lang::Dimension;
 using lang::Expr;

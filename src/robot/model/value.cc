@@ -31,10 +31,10 @@ Value PointAt(const Vector& p) {
   return v;
 }
 
-Value FrameAt(Pose pose) {
+Value FrameAt(const Pose& pose) {
   Value v;
   v.kind = ValueKind::kFrame;
-  v.pose = std::make_shared<const Pose>(std::move(pose));
+  v.pose = std::make_shared<const Pose>(pose);
   return v;
 }
 

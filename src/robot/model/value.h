@@ -42,7 +42,7 @@ struct Value {
 Value Quantity(TermId term, lang::Dimension dimension);
 Value Boolean(TermId term);
 Value PointAt(const Vector& p);
-Value FrameAt(Pose pose);
+Value FrameAt(const Pose& pose);
 Value ShapeOf(Shape shape);
 
 /// Does it depend on no variable?

@@ -8,7 +8,6 @@
 namespace rondo::robot {
 
 using diag::Kind;
-using lang::Dimension;
 
 namespace {
 
@@ -95,7 +94,7 @@ class Builder {
     if (!c.parent.text.empty()) {
       Mount(c, parent, body);
     } else if (c.place.valid()) {
-      if (auto pose = e_.Place(c.place, world_->scope, body.self)) body.self = std::move(*pose);
+      if (auto pose = e_.Place(c.place, world_->scope, body.self)) body.self = *pose;
     }
     if (type == types_.end()) {
       std::vector<std::string> names;

@@ -1,0 +1,107 @@
+#include "choreo/draw/svg.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace rondo::choreo {
+namespace {
+
+constexpr double kCharacter = 6.6;  // of 11 px in the font below, on average
+constexpr double kHead = 7;
+
+std::string Escape(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+std::string_view Name(Svg::Anchor anchor) {
+  switch (anchor) {
+    case Svg::Anchor::kStart:
+      return "start";
+    case Svg::Anchor::kMiddle:
+      return "middle";
+    case Svg::Anchor::kEnd:
+      return "end";
+  }
+  return "";
+}
+
+}  // namespace
+
+double Svg::WidthOf(std::string_view text) { return kCharacter * static_cast<double>(text.size()); }
+
+void Svg::Rect(double x, double y, double width, double height, const Style& style) {
+  body_ += fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="{}" stroke="{}")",
+                       x, y, width, height, style.fill, style.stroke);
+  if (style.radius > 0) body_ += fmt::format(R"( rx="{:.1f}")", style.radius);
+  body_ += style.dashed ? " stroke-dasharray=\"4 3\"/>\n" : "/>\n";
+}
+
+void Svg::Line(double x1, double y1, double x2, double y2, std::string_view stroke, bool dashed) {
+  body_ += fmt::format(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}"{}/>)", x1, y1, x2,
+                       y2, stroke, dashed ? R"( stroke-dasharray="4 3")" : "");
+  body_ += '\n';
+}
+
+void Svg::Arrow(double x1, double y1, double x2, double y2, std::string_view stroke) {
+  Line(x1, y1, x2, y2, stroke);
+  const double length = std::hypot(x2 - x1, y2 - y1);
+  if (length == 0) return;
+  const double ux = (x2 - x1) / length, uy = (y2 - y1) / length;
+  const double bx = x2 - kHead * ux, by = y2 - kHead * uy;
+  body_ +=
+      fmt::format("<path d=\"M{:.1f} {:.1f} L{:.1f} {:.1f} L{:.1f} {:.1f} Z\" fill=\"{}\"/>\n", x2, y2,
+                  bx - kHead / 2 * uy, by + kHead / 2 * ux, bx + kHead / 2 * uy, by - kHead / 2 * ux, stroke);
+}
+
+void Svg::Bow(double x1, double y1, double x2, double y2, double out, std::string_view stroke) {
+  body_ += fmt::format(
+      "<path d=\"M{:.1f} {:.1f} C{:.1f} {:.1f} {:.1f} {:.1f} {:.1f} {:.1f}\" fill=\"none\" stroke=\"{}\"/>\n",
+      x1, y1, out, y1, out, y2, x2 + kHead, y2, stroke);
+  Arrow(x2 + kHead + 1, y2, x2, y2, stroke);
+}
+
+void Svg::Text(double x, double y, std::string_view text, Anchor anchor, double width, bool bold) {
+  std::string shown(text);
+  const auto fits = static_cast<size_t>(width / kCharacter);
+  if (shown.size() > fits && fits > 1) {
+    size_t cut = fits - 1;
+    while (cut > 0 && (static_cast<unsigned char>(shown[cut]) & 0xC0u) == 0x80u) --cut;
+    shown = shown.substr(0, cut) + "\u2026";
+  }
+  body_ += fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}"{}>)", x, y, Name(anchor),
+                       bold ? R"( font-weight="bold")" : "");
+  if (shown != text) body_ += "<title>" + Escape(text) + "</title>";
+  body_ += Escape(shown) + "</text>\n";
+}
+
+std::string Svg::Finish(double width, double height, std::string_view title) const {
+  return fmt::format(
+             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 "
+             "{0:.0f} {1:.0f}\" "
+             "font-family=\"sans-serif\" font-size=\"11\">\n<title>{2}</title>\n"
+             "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
+             width, height, Escape(title)) +
+         body_ + "</svg>\n";
+}
+
+}  // namespace rondo::choreo

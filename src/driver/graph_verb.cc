@@ -1,0 +1,160 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "choreo/draw/chart.h"
+#include "driver/exit_status.h"
+#include "driver/motion.h"
+#include "driver/terminal.h"
+#include "driver/verbs.h"
+#include "lang/expr_printer.h"
+#include "lang/suggest.h"
+
+namespace rondo::driver {
+namespace {
+
+using choreo::Graph;
+using choreo::Node;
+using choreo::NodeKind;
+
+struct Options {
+  std::vector<std::string> files;
+  std::string choreography;
+  std::string svg;
+  bool json = false;
+};
+
+std::string_view KindName(NodeKind kind) {
+  switch (kind) {
+    case NodeKind::kMessage:
+      return "message";
+    case NodeKind::kMotion:
+      return "motion";
+    case NodeKind::kChoice:
+      return "choice";
+    case NodeKind::kMerge:
+      return "merge";
+    case NodeKind::kFork:
+      return "fork";
+    case NodeKind::kJoin:
+      return "join";
+    case NodeKind::kEnd:
+      return "end";
+  }
+  return "";
+}
+
+std::string Describe(const Graph& graph, const lang::ExprPool& pool, const Node& n) {
+  switch (n.kind) {
+    case NodeKind::kMessage:
+      return fmt::format("{} -> {}: {}", graph.NameOf(n.from), graph.NameOf(n.to), n.label);
+    case NodeKind::kMotion: {
+      std::string text;
+      for (const choreo::Part& p : n.parts) {
+        text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", graph.NameOf(p.robot),
+                            graph.instances[p.instance].text);
+      }
+      return text;
+    }
+    case NodeKind::kChoice: {
+      std::string text = graph.NameOf(n.chooser) + ":";
+      for (const choreo::ExprId guard : n.guards)
+        text += guard.valid() ? " [" + lang::PrintExpr(pool, guard) + "]" : " [otherwise]";
+      return text;
+    }
+    case NodeKind::kFork: {
+      std::string text;
+      for (const choreo::Scope& thread : n.threads)
+        text += (text.empty() ? "" : " || ") + graph.Names(thread);
+      return text;
+    }
+    case NodeKind::kMerge:
+    case NodeKind::kJoin:
+    case NodeKind::kEnd:
+      break;
+  }
+  return "";
+}
+
+nlohmann::json ToJson(const Graph& graph, const lang::ExprPool& pool) {
+  nlohmann::json nodes = nlohmann::json::array();
+  for (const Node& n : graph.nodes) {
+    nlohmann::json next = nlohmann::json::array();
+    for (const choreo::NodeId id : n.next) next.push_back(id.value);
+    nlohmann::json robots = nlohmann::json::array();
+    for (const choreo::RobotId r : n.scope) robots.push_back(graph.NameOf(r));
+    nodes.push_back(
+        {{"kind", KindName(n.kind)}, {"text", Describe(graph, pool, n)}, {"robots", robots}, {"next", next}});
+  }
+  return {{"choreography", graph.source->name.text}, {"start", graph.start.value}, {"nodes", nodes}};
+}
+
+std::string ToText(const Graph& graph, const lang::ExprPool& pool) {
+  std::string text = fmt::format("{}: begins at {}\n", graph.source->name.text, graph.start.value);
+  for (size_t i = 0; i < graph.nodes.size(); ++i) {
+    const Node& n = graph.nodes[i];
+    std::string next;
+    for (const choreo::NodeId id : n.next) next += fmt::format(" {}", id.value);
+    text += fmt::format("{:>4}: {:8}{}{}{}\n", i, KindName(n.kind), Describe(graph, pool, n),
+                        next.empty() ? "" : " ->", next);
+  }
+  return text;
+}
+
+int Run(const Options& options) {
+  Session session;
+  const auto motion = LoadMotion(options.files, {}, session);
+  if (motion == nullptr) return kRejected;
+  std::vector<const Graph*> graphs;
+  std::vector<std::string> names;
+  for (const Graph& graph : motion->graphs) {
+    names.push_back(graph.source->name.text);
+    if (options.choreography.empty() || options.choreography == names.back()) graphs.push_back(&graph);
+  }
+  const bool good = !session.diagnostics.has_errors();
+  if (good && graphs.empty()) {
+    const std::string near = lang::Suggest(options.choreography, names);
+    PrintFailure(options.choreography.empty()
+                     ? std::string("there is no choreography in these files")
+                     : fmt::format("there is no choreography `{}`{}", options.choreography,
+                                   near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
+    return kRejected;
+  }
+  if (good && !options.svg.empty()) {
+    if (graphs.size() == 1)
+      return WritePicture(options.svg, choreo::DrawChart(*graphs[0], motion->module.exprs));
+    PrintFailure("a picture shows one choreography: choose one by --choreography");
+    return kUsage;
+  }
+  if (options.json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const Graph* graph : graphs) list.push_back(ToJson(*graph, motion->module.exprs));
+    PrintJson({{"command", "graph"},
+               {"ok", good},
+               {"graphs", good ? list : nlohmann::json::array()},
+               {"diagnostics", DiagnosticsToJson(session.sources, session.diagnostics)}});
+  } else {
+    for (const Graph* graph : graphs) Print(ToText(*graph, motion->module.exprs));
+    PrintDiagnostics(session.sources, session.diagnostics);
+  }
+  return good ? kEstablished : kRejected;
+}
+
+}  // namespace
+
+void AddGraphVerb(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("graph", "show a choreography: as a picture, a list or JSON");
+  verb->add_option("FILE", options->files,
+                   "a `.rondo` file, and a `.chor` file about its world if there is one")
+      ->required();
+  verb->add_option("--choreography", options->choreography, "only this one");
+  verb->add_option("--svg", options->svg,
+                   "write a picture to this file: a lane for each robot, time downwards");
+  verb->add_flag("--json", options->json, "nodes and edges as JSON on standard output");
+  verb->footer("example: rondo graph examples/choreo/handover.rondo --svg handover.svg");
+  verb->callback([options, &status] { status = Run(*options); });
+}
+
+}  // namespace rondo::driver
