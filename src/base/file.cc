@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 
 namespace rondo::base {
 namespace {
@@ -26,7 +26,12 @@ Result<std::string> ReadFile(const std::filesystem::path& path) {
   }
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{std::strerror(errno)};
-  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  // Pipes have no size beforehand, and some files have no end.
+  std::string text;
+  for (std::array<char, 1 << 16> part; in; text.append(part.data(), static_cast<size_t>(in.gcount()))) {
+    if (text.size() > kLargestFile) return Error{"is larger than 64 MiB"};
+    in.read(part.data(), part.size());
+  }
   if (in.bad()) return Error{"could not be read to its end"};
   return text;
 }

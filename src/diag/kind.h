@@ -53,6 +53,7 @@ enum class Kind : uint8_t {
   kChoreoTwoRigid,
   kChoreoDurationOutside,
   kChoreoThreadStill,
+  kChoreoThreadEndless,
   kChoreoUnguarded,
   kChoreoZeno,
   kChoreoUnmergeable,

@@ -128,6 +128,14 @@ constexpr KindInfo kTable[] = {
      TEAM "world T { a: R b: R c: R }\nchoreography C in T {\n  parallel {\n    thread { a -> b: hello() }\n"
           "    thread { c: Go() }\n  }\n}\n",
      "check"},
+    {Kind::kChoreoThreadEndless, "choreo-thread-endless", Severity::kError,
+     "a thread that others wait for in vain",
+     "The threads of a `parallel` end together. One that goes on for ever, or may do so, stands beside "
+     "others that go on "
+     "for\never, too.",
+     TEAM
+     "choreography C in W {\n  parallel {\n    thread { loop { a: Go() } }\n    thread { b: Go() }\n  }\n}\n",
+     "check"},
     {Kind::kChoreoUnguarded, "choreo-unguarded", Severity::kError, "a loop that may go round without a step",
      "A recursion has a message or a motion on every way back to its beginning.",
      TEAM "choreography C in W {\n  rec X { continue X }\n}\n", "check"},

@@ -102,6 +102,16 @@ ExprId ExprParser::ParseImplies() {
   return Binary("implies", left, ParseImplies());
 }
 
+bool ExprParser::TooLong(int operators) {
+  if (operators <= kLongest) return false;
+  if (!failed_) {
+    diagnostics_.Report(Kind::kSyntaxNesting, Peek().span,
+                        fmt::format("more than {} operators in a row", kLongest));
+  }
+  failed_ = true;
+  return true;
+}
+
 ExprId ExprParser::ParseQuantifier() {
   const Token& word = Take();
   Expr quantifier{ExprKind::kQuantifier, word.span, std::string(word.text), {}, {}};
@@ -145,7 +155,8 @@ bool ExprParser::ParseBinder(Binder& binder) {
 
 ExprId ExprParser::ParseOr() {
   ExprId left = ParseAnd();
-  while (At("or") || At("||")) {
+  for (int operators = 1; At("or") || At("||"); ++operators) {
+    if (TooLong(operators)) return left;
     Take();
     AllowLineBreak();
     left = Binary("or", left, ParseAnd());
@@ -155,7 +166,8 @@ ExprId ExprParser::ParseOr() {
 
 ExprId ExprParser::ParseAnd() {
   ExprId left = ParseNot();
-  while (At("and") || At("&&")) {
+  for (int operators = 1; At("and") || At("&&"); ++operators) {
+    if (TooLong(operators)) return left;
     Take();
     AllowLineBreak();
     left = Binary("and", left, ParseNot());
@@ -210,7 +222,8 @@ ExprId ExprParser::ParseComparison() {
 
 ExprId ExprParser::ParseSum() {
   ExprId left = ParseProduct();
-  while (At("+") || At("-")) {
+  for (int operators = 1; At("+") || At("-"); ++operators) {
+    if (TooLong(operators)) return left;
     std::string text(Take().text);
     left = Binary(std::move(text), left, ParseProduct());
   }
@@ -219,7 +232,8 @@ ExprId ExprParser::ParseSum() {
 
 ExprId ExprParser::ParseProduct() {
   ExprId left = ParseUnary();
-  while (At("*") || At("/") || At("%")) {
+  for (int operators = 1; At("*") || At("/") || At("%"); ++operators) {
+    if (TooLong(operators)) return left;
     std::string text(Take().text);
     left = Binary(std::move(text), left, ParseUnary());
   }

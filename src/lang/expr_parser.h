@@ -46,6 +46,8 @@ class ExprParser {
   diag::Span PreviousSpan() const;
   bool failed() const { return failed_; }
   void ClearFailure() { failed_ = false; }
+  /// Reports a chain of operators that would be too deep a tree.
+  bool TooLong(int operators);
   ExprId Fail(diag::Span span) { return pool_.Add({ExprKind::kError, span, {}, {}, {}}); }
 
   const TokenStream& stream_;
@@ -71,6 +73,7 @@ class ExprParser {
   int depth_ = 0;
   bool failed_ = false;
   static constexpr int kDeepest = 120;
+  static constexpr int kLongest = 2000;
   class Depth;
 };
 

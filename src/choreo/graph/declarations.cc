@@ -56,6 +56,7 @@ void Declarations::Undeclared(const Name& name, std::string_view what, const std
       diagnostics_.Report(Kind::kChoreoUndeclared, name.span,
                           owner.empty() ? fmt::format("there is no {} `{}`", what, name.text)
                                         : fmt::format("`{}` has no {} `{}`", owner, what, name.text));
+  if (name.span.begin == name.span.end) return;  // not from a text: a file is called so
   if (const std::string near = lang::Suggest(name.text, names); !near.empty())
     report.Help(fmt::format("did you mean `{}`?", near)).Fix(name.span, near);
 }

@@ -107,6 +107,7 @@ class EquationLowering : public NodeBuilder {
   }
 
   struct Place {
+    std::string state;  // that goes on there
     size_t equation;
     size_t depth;  // how many forks lie between
   };
@@ -116,9 +117,11 @@ class EquationLowering : public NodeBuilder {
     std::optional<size_t>& join = joins_[fork];
     threads_[fork].resize(equations_[fork].to.size());
     const std::vector<size_t> starts = Next(fork);
+    std::set<std::string> arrived;  // each thread arrives by a state of its own
     for (size_t b = 0; b < starts.size(); ++b) {
       std::map<size_t, size_t> seen;
-      std::vector<Place> todo{{starts[b], 0}};
+      std::set<std::string> own;
+      std::vector<Place> todo{{equations_[fork].to[b].text, starts[b], 0}};
       while (!todo.empty()) {
         const Place at = todo.back();
         todo.pop_back();
@@ -126,6 +129,7 @@ class EquationLowering : public NodeBuilder {
         if (e.kind == EquationKind::kJoin && at.depth == 0) {
           if (join && *join != at.equation) return Torn(fork, e.span);
           join = at.equation;
+          own.insert(at.state);
           continue;
         }
         const auto [it, fresh] = seen.emplace(at.equation, at.depth);
@@ -134,11 +138,13 @@ class EquationLowering : public NodeBuilder {
         if (e.kind == EquationKind::kEnd || at.equation == fork) return Torn(fork, e.span);
         Mentions(e.step, threads_[fork][b]);
         const size_t depth = at.depth + (e.kind == EquationKind::kFork) - (e.kind == EquationKind::kJoin);
-        for (const size_t next : Next(at.equation)) todo.push_back({next, depth});
+        for (const Name& next : e.to) todo.push_back({next.text, next_of_.at(next.text), depth});
       }
+      if (own.size() > 1) return Torn(fork, equations_[*join].span);
+      arrived.merge(own);
     }
     if (!join) return;  // threads that go round for ever
-    if (equations_[*join].from.size() != starts.size()) Torn(fork, equations_[*join].span);
+    if (equations_[*join].from.size() != arrived.size()) Torn(fork, equations_[*join].span);
   }
 
   void Torn(size_t fork, Span span) {

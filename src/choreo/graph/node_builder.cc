@@ -87,6 +87,11 @@ Node NodeBuilder::MakeMessage(const Stmt& s, const Scope& scope) {
   for (const Payload& p : s.payload) AddPayload(p, names, known, node);
   node.refinement = evaluator_.arena().And(known);
   node.when = evaluator_.Formula(s.guard, graph_.world->scope, "a formula");
+  for (size_t i = 0; i < s.payload.size(); ++i) {
+    if (node.names[i].empty())
+      NeedKnown(node.payload[i].terms, evaluator_.SpanOf(s.payload[i].value), node.from);
+  }
+  if (s.guard.valid()) NeedKnown({node.when}, evaluator_.SpanOf(s.guard), node.from);
   return node;
 }
 
@@ -175,6 +180,24 @@ std::map<RobotId, Span> NodeBuilder::Owners(ExprId id) const {
   return owners;
 }
 
+void NodeBuilder::NeedKnown(const std::vector<TermId>& terms, Span span, RobotId robot,
+                            const std::vector<Value>& told) {
+  if (!robot.valid()) return;
+  std::set<TermId> unknown = robot::VariablesOf(evaluator_.arena(), terms);
+  std::erase_if(unknown, [&](TermId t) { return graph_.BodyOf(robot).sensed.contains(t); });
+  for (const Value& v : told) {
+    for (const TermId t : v.terms) unknown.erase(t);
+  }
+  if (unknown.empty()) return;
+  const expr::Arena& arena = evaluator_.arena();
+  diagnostics_
+      .Report(Kind::kChoreoGuardOwner, span,
+              fmt::format("`{}` cannot know this: it depends on `{}`", graph_.NameOf(robot),
+                          arena.symbol(arena.symbol_of(*unknown.begin())).name))
+      .Note("a robot knows its own state and inputs, and what it is told")
+      .Help("let whoever knows it send a message first");
+}
+
 void NodeBuilder::AddGuard(ExprId guard, Node& choice) {
   expr::Arena& arena = evaluator_.arena();
   choice.guards.push_back(guard);
@@ -183,8 +206,10 @@ void NodeBuilder::AddGuard(ExprId guard, Node& choice) {
     return;
   }
   choice.guard_terms.push_back(evaluator_.Formula(guard, graph_.world->scope, "a formula"));
+  bool foreign = false;
   for (const auto& [robot, span] : Owners(guard)) {
     if (robot == choice.chooser || !choice.chooser.valid()) continue;
+    foreign = true;
     diagnostics_
         .Report(Kind::kChoreoGuardOwner, span,
                 fmt::format("this guard reads the state of `{}`, but `{}` decides", graph_.NameOf(robot),
@@ -192,6 +217,8 @@ void NodeBuilder::AddGuard(ExprId guard, Node& choice) {
         .Help(fmt::format("let `{}` send what it knows to `{}` first", graph_.NameOf(robot),
                           graph_.NameOf(choice.chooser)));
   }
+  // Not by name, but by way of what carries it, or of the world.
+  if (!foreign) NeedKnown({choice.guard_terms.back()}, pool_[guard].span, choice.chooser);
 }
 
 // -- threads

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
+#include <utility>
 
 #include "expr/substitute.h"
 
@@ -29,13 +31,12 @@ Compare::Compare(const Flow& flow, Graph& graph, Declarations& declarations)
       arena_(evaluator_.arena()),
       calls_(graph, declarations, flow.source->loose_names) {}
 
+// Bindings only ever get weaker, so that this ends.
 bool Compare::Restart() {
-  const bool again = restarts_;
-  restarts_ = false;
-  bindings_.clear();
+  for (auto& [c, binding] : bindings_) binding.used = false;
   locals_.clear();
-  if (again) conditions_.clear();
-  return again;
+  if (restarts_) conditions_.clear();
+  return std::exchange(restarts_, false);
 }
 
 // The original interpreter found `OK` as `ok` and as `msg_ok`.
@@ -57,8 +58,9 @@ robot::Scope Compare::ScopeOf(const FlowNode& node) const {
   scope.names = locals_;
   for (const Case* c : node.bindings) {
     const auto it = bindings_.find(c);
+    const bool bound = it != bindings_.end() && it->second.used;
     for (size_t i = 0; i < c->names.size(); ++i)
-      scope.names[c->names[i].text] = it == bindings_.end() ? Value{} : it->second.values[i];
+      scope.names[c->names[i].text] = bound ? it->second.values[i] : Value{};
   }
   return scope;
 }
@@ -66,14 +68,33 @@ robot::Scope Compare::ScopeOf(const FlowNode& node) const {
 TermId Compare::KnownAt(const FlowNode& node) const {
   std::vector<TermId> known;
   for (const Case* c : node.bindings) {
-    if (const auto it = bindings_.find(c); it != bindings_.end()) known.push_back(it->second.known);
+    const auto it = bindings_.find(c);
+    if (it != bindings_.end() && !it->second.constant) known.push_back(arena_.Or(it->second.ways));
   }
   return arena_.And(known);
 }
 
+// A robot knows its own state and inputs, what it is told, and what it remembers.
+void Compare::NeedKnown(const FlowNode& node, const std::vector<TermId>& terms, Span span) {
+  std::set<TermId> unknown = robot::VariablesOf(arena_, terms);
+  const robot::Body& body = graph_.BodyOf(flow_.robot);
+  std::erase_if(unknown, [&](TermId t) { return body.sensed.contains(t); });
+  for (const auto& [name, value] : ScopeOf(node).names) {
+    for (const TermId t : value.terms) unknown.erase(t);
+  }
+  if (unknown.empty()) return;
+  evaluator_.diagnostics()
+      .Report(Kind::kProcessStep, span,
+              fmt::format("`{}` cannot know this: it depends on `{}`", body.name.text,
+                          arena_.symbol(arena_.symbol_of(*unknown.begin())).name))
+      .Note("a robot knows its own state and inputs, and what it is told");
+}
+
 TermId Compare::GuardOf(const FlowNode& node) {
   if (!node.act->guard.valid()) return arena_.True();
-  return evaluator_.Formula(node.act->guard, ScopeOf(node), "a formula");
+  const TermId guard = evaluator_.Formula(node.act->guard, ScopeOf(node), "a formula");
+  NeedKnown(node, {guard}, evaluator_.SpanOf(node.act->guard));
+  return guard;
 }
 
 void Compare::CheckAssignment(const FlowNode& node) {
@@ -81,6 +102,7 @@ void Compare::CheckAssignment(const FlowNode& node) {
   const robot::Scope scope = ScopeOf(node);
   Value value = evaluator_.Evaluate(node.act->guard, scope);
   if (value.kind == ValueKind::kError) return;
+  NeedKnown(node, value.terms, evaluator_.SpanOf(node.act->guard));
   if (value.terms.empty()) {
     evaluator_.WrongType(evaluator_.SpanOf(node.act->guard), value, "a quantity, a point or a formula");
     return;
@@ -97,9 +119,8 @@ void Compare::CheckAssignment(const FlowNode& node) {
   }
   for (TermId& t : value.terms) t = arena_.FreshConstant(name.text, arena_.sort_of(t));
   value.squared.reset();
-  value.any_dimension = false;
   const auto [it, fresh] = locals_.emplace(name.text, value);
-  if (fresh || (it->second.kind == value.kind && it->second.dimension == value.dimension)) return;
+  if (fresh || (it->second.kind == value.kind && robot::Evaluator::Agree(it->second, value))) return;
   evaluator_.WrongType(evaluator_.SpanOf(node.act->guard), value,
                        fmt::format("{}, as before,", robot::Describe(it->second)));
 }
@@ -130,7 +151,10 @@ TermId Compare::Equal(const Value& a, const Value& b) {
 std::optional<Wrong> Compare::SendPayload(const FlowNode& node, const std::vector<NodeId>& nodes) {
   const robot::Scope scope = ScopeOf(node);
   std::vector<Value> values;
-  for (const ExprId id : node.act->values) values.push_back(evaluator_.Evaluate(id, scope));
+  for (const ExprId id : node.act->values) {
+    values.push_back(evaluator_.Evaluate(id, scope));
+    NeedKnown(node, values.back().terms, evaluator_.SpanOf(id));
+  }
   for (const NodeId id : nodes) {
     const Node& message = graph_[id];
     const std::string label = message.label;
@@ -176,11 +200,39 @@ std::optional<Wrong> Compare::SendPayload(const FlowNode& node, const std::vecto
   return std::nullopt;
 }
 
+// What is known of the names of a case when this message came. Of what a message says about states, nothing
+// is kept: they change, and the names do not.
+TermId Compare::WayOf(const Node& message, const std::vector<Value>& values) {
+  expr::Substitution names;
+  std::vector<TermId> known;
+  std::vector<TermId> symbols;
+  for (size_t i = 0; i < values.size(); ++i) {
+    symbols.insert(symbols.end(), values[i].terms.begin(), values[i].terms.end());
+    if (message.names[i].empty()) {
+      known.push_back(Equal(values[i], message.payload[i]));
+    } else {
+      for (size_t k = 0; k < values[i].terms.size(); ++k)
+        names.emplace(message.payload[i].terms[k], values[i].terms[k]);
+    }
+  }
+  const TermId refinement = expr::Substitute(arena_, message.refinement, names);
+  if (arena_.op(refinement) == expr::Op::kAnd) {
+    const auto parts = arena_.args(refinement);
+    known.insert(known.end(), parts.begin(), parts.end());
+  } else {
+    known.push_back(refinement);
+  }
+  std::erase_if(known, [&](TermId t) {
+    const auto variables = robot::VariablesOf(arena_, {t});
+    return !std::ranges::all_of(variables, [&](TermId v) { return std::ranges::count(symbols, v) > 0; });
+  });
+  return arena_.And(known);
+}
+
 std::optional<Wrong> Compare::ReceivePayload(const Case& c, const std::vector<NodeId>& nodes) {
   if (c.names.empty()) return std::nullopt;
-  Binding binding;
-  binding.constant = !several_.contains(&c);
   const Node& first = graph_[nodes[0]];
+  bool constant = true;
   for (const NodeId id : nodes) {
     const Node& message = graph_[id];
     if (message.payload.size() != c.names.size()) {
@@ -192,55 +244,50 @@ std::optional<Wrong> Compare::ReceivePayload(const Case& c, const std::vector<No
     }
     for (size_t i = 0; i < c.names.size(); ++i) {
       const Value& value = message.payload[i];
-      binding.constant =
-          binding.constant && robot::IsConstant(arena_, value) && value.terms == first.payload[i].terms;
+      constant = constant && robot::IsConstant(arena_, value) && value.terms == first.payload[i].terms;
       if (value.kind == first.payload[i].kind && value.dimension == first.payload[i].dimension) continue;
       return Wrong{Kind::kProcessPayload, c.span,
                    fmt::format("`{}` carries different kinds of values", message.label), ""};
     }
   }
-  const auto before = bindings_.find(&c);
-  const bool again = before != bindings_.end();
-  if (binding.constant) {
-    binding.values = first.payload;
-    binding.known = arena_.True();
-    for (size_t i = 0; again && i < c.names.size(); ++i) {
-      if (before->second.values[i].terms != binding.values[i].terms) restarts_ = true;
+  const auto [it, fresh] = bindings_.try_emplace(&c);
+  Binding& binding = it->second;
+  if (fresh && constant) {
+    binding = {first.payload, {}, true, true};
+    return std::nullopt;
+  }
+  if (!fresh && binding.constant) {
+    bool same = constant;
+    for (size_t i = 0; i < c.names.size(); ++i)
+      same = same && binding.values[i].terms == first.payload[i].terms;
+    if (same) {
+      binding.used = true;
+      return std::nullopt;
     }
-  } else if (again && !before->second.constant) {
-    binding.values = before->second.values;
-  } else {
-    restarts_ = restarts_ || again;
-    for (Value value : first.payload) {
-      for (size_t k = 0; k < value.terms.size(); ++k)
-        value.terms[k] =
-            arena_.FreshConstant(c.names[binding.values.size()].text, arena_.sort_of(value.terms[k]));
+    restarts_ = true;
+  }
+  if (fresh || binding.constant) {
+    // Symbols, of which the constant so far is one possible value.
+    const std::vector<Value> before = std::exchange(binding.values, {});
+    for (size_t i = 0; i < c.names.size(); ++i) {
+      Value value = first.payload[i];
+      for (TermId& t : value.terms) t = arena_.FreshConstant(c.names[i].text, arena_.sort_of(t));
       value.squared.reset();
       binding.values.push_back(std::move(value));
     }
+    std::vector<TermId> equal;
+    for (size_t i = 0; i < before.size(); ++i) equal.push_back(Equal(binding.values[i], before[i]));
+    if (binding.constant) binding.ways.push_back(arena_.And(equal));
+    binding.constant = false;
   }
-  if (restarts_) several_.insert(&c);
-  // What is known: one of the messages came.
-  std::vector<TermId> ways;
-  if (again && !binding.constant) ways.push_back(before->second.known);
+  // What followed from less ways has to be looked at again.
   for (const NodeId id : nodes) {
-    if (binding.constant) break;
-    const Node& message = graph_[id];
-    expr::Substitution names;
-    std::vector<TermId> known;
-    for (size_t i = 0; i < c.names.size(); ++i) {
-      if (message.names[i].empty()) {
-        known.push_back(Equal(binding.values[i], message.payload[i]));
-      } else {
-        for (size_t k = 0; k < message.payload[i].terms.size(); ++k)
-          names.emplace(message.payload[i].terms[k], binding.values[i].terms[k]);
-      }
-    }
-    known.push_back(expr::Substitute(arena_, message.refinement, names));
-    ways.push_back(arena_.And(known));
+    const TermId way = WayOf(graph_[id], binding.values);
+    if (std::ranges::count(binding.ways, way) > 0) continue;
+    binding.ways.push_back(way);
+    restarts_ = restarts_ || binding.used;
   }
-  if (!binding.constant) binding.known = arena_.Or(ways);
-  bindings_[&c] = std::move(binding);
+  binding.used = true;
   return std::nullopt;
 }
 
@@ -249,6 +296,12 @@ std::optional<Wrong> Compare::ReceivePayload(const Case& c, const std::vector<No
 std::optional<Wrong> Compare::Moves(const FlowNode& node, const std::vector<NodeId>& nodes) {
   const auto done = calls_.Resolve(flow_.robot, node.act->motion, ScopeOf(node));
   if (!done) return std::nullopt;  // said already
+  if (node.kind == FlowKind::kReceive && !graph_.instances[*done].duration.interruptible) {
+    return Wrong{Kind::kProcessMotion, node.act->motion.motion.span,
+                 fmt::format("`{}` cannot be interrupted by the message that it waits for",
+                             graph_.instances[*done].text),
+                 ""};
+  }
   for (const NodeId id : nodes) {
     for (const Part& part : graph_[id].parts) {
       if (part.robot != flow_.robot || part.instance == *done) continue;
@@ -304,6 +357,13 @@ std::optional<Wrong> Compare::Refines(const FlowNode& node, const Instance& done
   Need(span, what, arena_.And(known, c.assume), x.assume, {at});
   Need(span, what, arena_.And(known, x.during), c.during, {at});
   Need(span, what, arena_.And(known, x.post), c.post, {at});
+  if (c.footprint && !x.footprint) {
+    return Wrong{
+        Kind::kProcessMotion, span,
+        fmt::format("nothing is known of the space that `{}` takes, which has to be within that of `{}`",
+                    done.text, asked.text),
+        ""};
+  }
   if (x.footprint && c.footprint) {
     const robot::Vector& p = graph_.world->point;
     Need(span, what, arena_.And({known, x.during, robot::Contains(arena_, *x.footprint, p)}),

@@ -2,7 +2,6 @@
 
 #include <map>
 #include <optional>
-#include <set>
 
 #include "choreo/process/flow.h"
 #include "choreo/process/typing.h"
@@ -46,20 +45,24 @@ class Compare {
   void Forget(size_t from) { conditions_.resize(from); }
   std::vector<SideCondition> TakeConditions() { return std::move(conditions_); }
 
-  /// A name was taken to be one constant, but may be several: what followed from it has to be done again.
+  /// Something was taken to be known of a name that does not always hold: what followed has to be done again.
   bool restarts() const { return restarts_; }
-  /// Forgets everything but that; true if there was such a name.
+  /// Begins again, with what is known of names now; true if something new is.
   bool Restart();
 
  private:
+  /// What the names of one case stand for, in everything behind it.
   struct Binding {
-    std::vector<robot::Value> values;
-    expr::TermId known;
+    std::vector<robot::Value> values;  ///< constants of the choreography, or symbols
+    std::vector<expr::TermId> ways;    ///< what is known of the symbols: one of these
     bool constant = false;
+    bool used = false;  ///< in this pass
   };
 
   robot::Scope ScopeOf(const FlowNode& node) const;
   expr::TermId KnownAt(const FlowNode& node) const;
+  void NeedKnown(const FlowNode& node, const std::vector<expr::TermId>& terms, diag::Span span);
+  expr::TermId WayOf(const Node& message, const std::vector<robot::Value>& values);
   expr::TermId Equal(const robot::Value& a, const robot::Value& b);
   std::optional<Wrong> Refines(const FlowNode& node, const Instance& done, const Instance& asked, NodeId at);
 
@@ -70,7 +73,6 @@ class Compare {
   expr::Arena& arena_;
   Calls calls_;
   std::map<const Case*, Binding> bindings_;
-  std::set<const Case*> several_;  // cases that are reached with different constants
   robot::Members locals_;
   std::vector<SideCondition> conditions_;
   bool restarts_ = false;

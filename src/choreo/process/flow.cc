@@ -25,6 +25,9 @@ class Builder {
     const FlowId end = Add(FlowKind::kExit, process_.span, nullptr);
     flow_.start = Block(process_.body, end);
     if (diagnostics_.errors() == errors) CheckLoops();
+    for (const FlowNode& node : flow_.nodes) {
+      for (const FlowCase& c : node.cases) CheckNames(*c.source);
+    }
     if (diagnostics_.errors() > errors) return std::nullopt;
     return std::move(flow_);
   }
@@ -150,6 +153,20 @@ class Builder {
     for (const auto& [name, id] : recursions_) names.push_back(name);
     declarations_.Undeclared(act.label, "recursion", names);
     return FlowId(0);
+  }
+
+  // What a message carries is not assigned to: its name stands for it everywhere behind.
+  void CheckNames(const Case& c) {
+    for (const Name& name : c.names) {
+      for (const FlowNode& node : flow_.nodes) {
+        if (node.kind != FlowKind::kAssign || node.act->variable.text != name.text) continue;
+        diagnostics_
+            .Report(Kind::kChoreoDuplicate, node.act->variable.span,
+                    fmt::format("`{}` names what a message carries, and is not assigned to", name.text))
+            .At(name.span, "named here")
+            .Help("choose another name");
+      }
+    }
   }
 
   // From no branch of a loop may control come back without a step.

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <set>
 
 #include "choreo/process/compare.h"
@@ -192,7 +194,7 @@ class Typing {
       if (!Case(p, s, action, to)) return false;
     }
     if (!expects) return Mismatch(p, s, "waits for a message");
-    if (move == nullptr) return true;
+    if (move == nullptr) return WaitsWell(node, s);
     if (node.act->motion.motion.text.empty()) {
       return Fail([&] {
         auto& report =
@@ -205,6 +207,14 @@ class Typing {
     }
     if (!Motion(node, s, *move)) return false;
     return Pair(p, move->second);
+  }
+
+  // The message may come at once, but not for certain: the robot may begin what it does meanwhile.
+  bool WaitsWell(const FlowNode& node, StateId s) {
+    if (node.act->motion.motion.text.empty()) return true;
+    const auto wrong = compare_.Moves(node, {});
+    if (!wrong) return true;
+    return Fail([&] { wrong->Report(diagnostics_, graph_[At(s).nodes.begin()->second[0]].span); });
   }
 
   bool Case(FlowId p, StateId s, const Action& action, StateId to) {
@@ -277,31 +287,42 @@ class Typing {
 
   // The guards of a process are evaluated in the state in which the robot chooses. What it assigns on the way
   // may change what they mean, so they prove nothing of the guards of the choreography then.
-  bool Leaves(FlowId start, std::vector<Leaf>& leaves) {
-    constexpr size_t kMostLeaves = 1000;
-    std::vector<Leaf> todo{{start, arena_.True()}};
+  std::vector<Leaf> Leaves(FlowId start) {
+    // The conditions have no loops: each node comes before those behind it.
+    std::vector<FlowId> order;
+    std::set<FlowId> seen;
+    std::vector<std::pair<FlowId, bool>> todo{{start, false}};
     while (!todo.empty()) {
-      const Leaf leaf = todo.back();
+      const auto [id, behind] = todo.back();
       todo.pop_back();
-      const FlowNode& node = flow_[leaf.at];
-      if (leaf.condition == arena_.False()) continue;
+      if (behind) {
+        order.push_back(id);
+        continue;
+      }
+      if (!seen.insert(id).second) continue;
+      todo.emplace_back(id, true);
+      const FlowNode& node = flow_[id];
+      if (node.kind == FlowKind::kIf) todo.emplace_back(node.otherwise, false);
+      if (node.kind == FlowKind::kIf || node.kind == FlowKind::kAssign) todo.emplace_back(node.next, false);
+    }
+    std::map<FlowId, std::vector<TermId>> conditions{{start, {arena_.True()}}};
+    std::vector<Leaf> leaves;
+    for (size_t i = order.size(); i-- > 0;) {
+      const FlowNode& node = flow_[order[i]];
+      const TermId condition = arena_.Or(conditions[order[i]]);
+      if (condition == arena_.False()) continue;
       if (node.kind == FlowKind::kAssign) {
         compare_.CheckAssignment(node);
-        todo.push_back({node.next, arena_.True()});
+        conditions[node.next].push_back(arena_.True());
       } else if (node.kind == FlowKind::kIf) {
         const TermId guard = compare_.GuardOf(node);
-        if (node.otherwise != node.next)
-          todo.push_back({node.otherwise, arena_.And(leaf.condition, arena_.Not(guard))});
-        todo.push_back(
-            {node.next, node.otherwise == node.next ? leaf.condition : arena_.And(leaf.condition, guard)});
+        conditions[node.next].push_back(arena_.And(condition, guard));
+        conditions[node.otherwise].push_back(arena_.And(condition, arena_.Not(guard)));
       } else {
-        leaves.push_back(leaf);
+        leaves.push_back({order[i], condition});
       }
-      if (todo.size() + leaves.size() <= kMostLeaves) continue;
-      diagnostics_.Report(Kind::kProcessGuard, flow_[start].span, "too many conditions stand before a step");
-      return false;
     }
-    return true;
+    return leaves;
   }
 
   // Does the alternative begin as the process does? Necessary, not sufficient.
@@ -348,9 +369,7 @@ class Typing {
   // [T-Cond]: on each way through the conditions, some alternative is allowed and is what the process does.
   bool Choice(FlowId p, StateId s) {
     const auto& choice = At(s).choice;
-    std::vector<Leaf> leaves;
-    if (!Leaves(p, leaves)) return false;
-    for (const Leaf& leaf : leaves) {
+    for (const Leaf& leaf : Leaves(p)) {
       std::vector<size_t> candidates;
       for (size_t b = 0; b < choice.size(); ++b) {
         if (Begins(leaf.at, choice[b].second)) candidates.push_back(b);

@@ -141,12 +141,23 @@ class Projection {
       own = id;
     }
     if (end.valid() && own.valid()) return Unclear(s, own, end);
-    const bool sends = own.valid() && (own == choice || graph_[own].kind == NodeKind::kMessage);
+    const bool sends = own.valid() && (own == choice || graph_[own].kind == NodeKind::kMessage || Holds(own));
+    NodeId other;
     for (const auto& [action, id] : origins) {
       if (action.kind != Action::Kind::kReceive) continue;
       if (sends) return Unclear(s, own, id);
       if (end.valid()) return Unclear(s, id, end);
+      // Of two senders, one may be early: it does not know that the robot should hear the other one first.
+      if (other.valid() && graph_[other].from != action.peer) return Unclear(s, other, id);
+      other = id;
     }
+  }
+
+  // A motion in which the robot could not listen from its beginning.
+  bool Holds(NodeId motion) const {
+    return std::ranges::any_of(graph_[motion].parts, [&](const Part& p) {
+      return p.robot == robot_ && (!p.duration.interruptible || !p.duration.least.IsZero());
+    });
   }
 
   // A message that may come before a motion or right behind it: a motion may be short, so its receiver could

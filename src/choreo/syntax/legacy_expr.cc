@@ -72,9 +72,9 @@ ExprId LegacyExprParser::ParseLegacy() { return ParseLevel(0); }
 ExprId LegacyExprParser::ParseLevel(int level) {
   if (level == kPrefixLevel) return ParsePrefix();
   ExprId left = ParseLevel(level + 1);
-  while (!failed()) {
+  for (int operators = 1; !failed(); ++operators) {
     const std::string sign = SignAhead();
-    if (sign.empty() || LevelOf(sign) != level) break;
+    if (sign.empty() || LevelOf(sign) != level || TooLong(operators)) break;
     Take();
     if (sign == "**") Take();
     const ExprId right = ParseLevel(level + 1);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "choreo/wellformed/wellformed.h"
 
@@ -16,6 +17,7 @@ using expr::Rational;
 struct Times {
   Rational least;
   std::optional<Rational> most;
+  friend bool operator==(const Times&, const Times&) = default;
 };
 
 Times operator+(const Times& a, const Times& b) {
@@ -34,10 +36,13 @@ Times Hull(const Times& a, const Times& b) {
 
 bool IsFixed(const Times& t) { return t.most && *t.most == t.least; }
 
-/// From `least` on, up to `most`; without `least`, nobody can say from when on: loops came before.
+/// For certain from `least` on, up to `most`; without `least`, nobody can say from when on: loops came
+/// before. Perhaps, if what comes before takes the least time, from `soonest` on.
 struct Window {
   std::optional<Rational> least;
   std::optional<Rational> most;
+  Rational soonest;
+  friend bool operator==(const Window&, const Window&) = default;
 };
 
 /// When a thread is through. A rigid end comes at some time that nobody can choose; a flexible one at any
@@ -45,6 +50,7 @@ struct Window {
 struct Ending {
   std::optional<Times> rigid;
   std::optional<Window> flexible;
+  bool never = false;  ///< it goes on for ever
 };
 
 void AddRigid(Ending& ending, const Times& times) {
@@ -60,6 +66,7 @@ void AddFlexible(Ending& ending, const Window& window) {
   known.least =
       known.least && window.least ? std::optional(std::max(*known.least, *window.least)) : std::nullopt;
   if (Below(window.most, known.most)) known.most = window.most;
+  known.soonest = std::min(known.soonest, window.soonest);
 }
 
 bool IsZero(const Ending& e) { return e.rigid && !e.flexible && e.rigid->most && e.rigid->most->IsZero(); }
@@ -67,6 +74,7 @@ bool IsZero(const Ending& e) { return e.rigid && !e.flexible && e.rigid->most &&
 std::string Text(const Ending& e) {
   if (!e.rigid && !e.flexible->least) return "an unknown time";
   const Times t = e.rigid ? *e.rigid : Times{*e.flexible->least, e.flexible->most};
+  if (t.most && *t.most < t.least) return fmt::format("{} to {} s", t.most->ToString(), t.least.ToString());
   if (IsFixed(t)) return fmt::format("{} s", t.least.ToString());
   if (!t.most) return fmt::format("{} s or more", t.least.ToString());
   return fmt::format("{} to {} s", t.least.ToString(), t.most->ToString());
@@ -90,9 +98,21 @@ class Threads {
     ends_[id] = {};
     const Node& fork = graph_[id];
     std::vector<Ending> threads;
-    for (const NodeId start : fork.next) threads.push_back(Thread(start, fork.join));
-    const bool good = Compatible(fork, threads);
     Ending all;
+    for (size_t b = 0; b < fork.next.size(); ++b) {
+      const std::optional<bool> ends = Ends(fork.next[b], fork.join);
+      if (!ends) {
+        diagnostics_
+            .Report(Kind::kChoreoThreadEndless, fork.facts[b].span,
+                    fmt::format("{} may go on for ever here, or not", graph_.Names(fork.threads[b])))
+            .Help("let every way through a thread come to its end, or none");
+        return ends_[id] = {};
+      }
+      threads.push_back(*ends ? Thread(fork.next[b], fork.join) : Ending{{}, {}, true});
+      all.never = all.never || !*ends;
+    }
+    if (all.never) return ends_[id] = Endless(fork, threads);
+    const bool good = Compatible(fork, threads) && Heard(id, threads);
     bool flexible = true;
     for (const Ending& t : threads) {
       if (t.rigid) AddRigid(all, *t.rigid);
@@ -104,6 +124,53 @@ class Threads {
     // What was reported once is not reported again further out.
     if (!good) all = {};
     return ends_[id] = all;
+  }
+
+  // Does every way from `start` lead to `join`? No way: false; only some: nothing.
+  std::optional<bool> Ends(NodeId start, NodeId join) {
+    std::set<NodeId> seen;
+    std::map<NodeId, std::vector<NodeId>> before;
+    std::vector<NodeId> todo{start};
+    while (!todo.empty()) {
+      const NodeId id = todo.back();
+      todo.pop_back();
+      if (!seen.insert(id).second || id == join) continue;
+      for (const NodeId next : graph_[id].next) {
+        before[next].push_back(id);
+        todo.push_back(next);
+      }
+    }
+    if (!seen.contains(join)) return false;
+    std::set<NodeId> leading;
+    todo = {join};
+    while (!todo.empty()) {
+      const NodeId id = todo.back();
+      todo.pop_back();
+      if (leading.insert(id).second) todo.insert(todo.end(), before[id].begin(), before[id].end());
+    }
+    if (leading.size() == seen.size()) return true;
+    return std::nullopt;
+  }
+
+  // Threads go on for ever together, and then nothing stands behind them.
+  Ending Endless(const Node& fork, const std::vector<Ending>& threads) {
+    for (size_t b = 0; b < threads.size(); ++b) {
+      if (threads[b].never) continue;
+      const auto endless = std::ranges::find(threads, true, &Ending::never) - threads.begin();
+      diagnostics_
+          .Report(Kind::kChoreoThreadEndless, fork.facts[static_cast<size_t>(endless)].span,
+                  "this thread goes on for ever, but others end")
+          .At(fork.facts[b].span, "this one ends, and waits for it")
+          .Help("let all threads of a `parallel` come to an end, or none");
+      return {};
+    }
+    const Node& behind = graph_[graph_[fork.join].next[0]];
+    if (behind.kind == NodeKind::kMessage || behind.kind == NodeKind::kMotion ||
+        behind.kind == NodeKind::kFork || behind.kind == NodeKind::kChoice) {
+      diagnostics_.Report(Kind::kChoreoUnreachable, behind.span, "this step is never reached")
+          .At(fork.span, "these threads go on for ever");
+    }
+    return {{}, {}, true};
   }
 
   // How long one step takes, and whether it waits to be interrupted.
@@ -142,20 +209,20 @@ class Threads {
         const auto [times, waits] = StepOf(n);
         after.ending = {};
         if (waits) {
-          AddFlexible(after.ending, From(after.times, {times.least, times.most}));
+          AddFlexible(after.ending, From(after.times, {times.least, times.most, times.least}));
         } else {
           AddRigid(after.ending, after.times + times);
         }
         after.times = after.times + times;
       } else if (n.kind == NodeKind::kFork) {
         const Ending inner = EndOf(id);
-        if (!inner.rigid && !inner.flexible) return {};
+        if (!inner.rigid && !inner.flexible) return {};  // reported, or for ever
         Ending outer;
         Times span = inner.rigid ? *inner.rigid : Times{Rational(0), Rational(0)};
         if (inner.rigid) AddRigid(outer, after.times + *inner.rigid);
         if (inner.flexible) {
           AddFlexible(outer, From(after.times, *inner.flexible));
-          const Times waiting{inner.flexible->least.value_or(Rational(0)), inner.flexible->most};
+          const Times waiting{inner.flexible->soonest, inner.flexible->most};
           span = inner.rigid ? Hull(span, waiting) : waiting;
         }
         after.ending = outer;
@@ -174,12 +241,13 @@ class Threads {
     Window ends;
     if (begins.most && window.least) ends.least = *begins.most + *window.least;
     if (window.most) ends.most = begins.least + *window.most;
+    ends.soonest = begins.least + window.soonest;
     return ends;
   }
 
   static void Arrive(NodeId to, const Arrival& way, std::map<NodeId, Arrival>& arrivals,
                      std::vector<NodeId>& todo) {
-    constexpr size_t kMostUpdates = 8;
+    constexpr size_t kMostUpdates = 40;
     const auto [it, fresh] = arrivals.emplace(to, way);
     Arrival& known = it->second;
     if (fresh) {
@@ -191,17 +259,18 @@ class Threads {
     known.times = Hull(known.times, way.times);
     if (way.ending.rigid) AddRigid(known.ending, *way.ending.rigid);
     if (way.ending.flexible) AddFlexible(known.ending, *way.ending.flexible);
-    // A loop takes any time.
+    if (Same(before, known)) return;
+    // What grows again and again is in a loop, and takes any time.
     if (++known.updates > kMostUpdates) {
       known.times.most.reset();
       if (known.ending.rigid) known.ending.rigid->most.reset();
     }
-    if (!Same(before, known)) todo.push_back(to);
+    todo.push_back(to);
   }
 
   template <typename T>
   static bool Same(const std::optional<T>& a, const std::optional<T>& b) {
-    return a.has_value() == b.has_value() && (!a || (a->least == b->least && a->most == b->most));
+    return a.has_value() == b.has_value() && (!a || *a == *b);
   }
   static bool Same(const Arrival& a, const Arrival& b) {
     return Same(std::optional(a.times), std::optional(b.times)) && Same(a.ending.rigid, b.ending.rigid) &&
@@ -215,6 +284,50 @@ class Threads {
         Report(fork, threads, i, j);
         return false;
       }
+    }
+    return true;
+  }
+
+  // Who speaks first behind the threads may do so as soon as its own thread allows: the others are through by
+  // then, unless there is one who waits for this very message.
+  bool Heard(NodeId id, const std::vector<Ending>& threads) {
+    const Node& fork = graph_[id];
+    std::set<NodeId> seen;
+    std::vector<NodeId> todo{fork.join};
+    while (!todo.empty()) {
+      const NodeId at = todo.back();
+      todo.pop_back();
+      if (!seen.insert(at).second) continue;
+      const Node& n = graph_[at];
+      if (n.kind == NodeKind::kMessage) {
+        if (!HeardFirst(fork, threads, n)) return false;
+      } else if (n.kind == NodeKind::kMerge || n.kind == NodeKind::kChoice || n.kind == NodeKind::kJoin) {
+        todo.insert(todo.end(), n.next.begin(), n.next.end());
+      }
+    }
+    return true;
+  }
+
+  bool HeardFirst(const Node& fork, const std::vector<Ending>& threads, const Node& message) {
+    const auto own =
+        std::ranges::find_if(fork.threads, [&](const Scope& s) { return s.contains(message.from); });
+    if (own == fork.threads.end()) return true;
+    const auto sender = static_cast<size_t>(own - fork.threads.begin());
+    if (!threads[sender].flexible) return true;  // fits the windows of all others
+    for (size_t j = 0; j < threads.size(); ++j) {
+      if (j == sender || !threads[j].flexible || fork.threads[j] == Scope{message.to}) continue;
+      const std::optional<Rational>& sure = threads[j].flexible->least;
+      if (sure && *sure <= threads[sender].flexible->soonest) continue;
+      diagnostics_
+          .Report(Kind::kChoreoNotReady, message.span,
+                  fmt::format("`{}` may send this before {} {} through", graph_.NameOf(message.from),
+                              graph_.Names(fork.threads[j]), fork.threads[j].size() == 1 ? "is" : "are"))
+          .At(fork.facts[j].span,
+              fmt::format("this thread takes {}", Text({std::nullopt, threads[j].flexible})))
+          .At(fork.facts[sender].span,
+              fmt::format("this one may be over after {} s", threads[sender].flexible->soonest.ToString()))
+          .Help("let a robot of the thread that takes longest send the first message");
+      return false;
     }
     return true;
   }

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -11,52 +13,111 @@ namespace {
 
 using diag::Kind;
 
-/// A joint motion that was begun, and who has heard since that it ends.
-struct Track {
-  NodeId motion;
-  NodeId first;    ///< the first message behind it, or behind the last join since
-  Scope informed;  ///< who took part in messages since
-  /// Who knows that it has ended: at first who could not be interrupted; nobody if all can, so that whoever
-  /// speaks ends it.
-  Scope ready;
-  friend auto operator<=>(const Track&, const Track&) = default;
+/// What is known, on every way from a motion to some node, of who has heard that the motion ends.
+struct News {
+  bool quiet = false;   ///< on some way nobody has spoken yet, or not since the last join
+  bool spoken = false;  ///< on some way somebody has
+  NodeId first;         ///< a message that was the first one
+  Scope informed;       ///< who took part in messages since, on every way on which somebody has spoken
+  /// Who knows that the motion has ended, on every way: at first who could not be interrupted. Nothing if all
+  /// can be, so that whoever speaks ends it.
+  std::optional<Scope> ready;
+  bool joined = false;  ///< threads have joined since, on some way
+  bool told = false;  ///< on some way `ready` is who was told in its thread, not who could not be interrupted
+  friend bool operator==(const News&, const News&) = default;
 };
+
+Scope Both(const Scope& a, const Scope& b) {
+  Scope both;
+  std::ranges::set_intersection(a, b, std::inserter(both, both.end()));
+  return both;
+}
+
+// Of two ways that meet: what holds on both.
+void Meet(News& known, const News& way) {
+  if (way.spoken) known.informed = known.spoken ? Both(known.informed, way.informed) : way.informed;
+  if (!known.first.valid()) known.first = way.first;
+  if (way.ready) known.ready = known.ready ? Both(*known.ready, *way.ready) : *way.ready;
+  known.quiet = known.quiet || way.quiet;
+  known.spoken = known.spoken || way.spoken;
+  known.joined = known.joined || way.joined;
+  known.told = known.told || way.told;
+}
 
 class Synchronisation {
  public:
   Synchronisation(const Graph& graph, diag::Diagnostics& diagnostics)
       : graph_(graph), diagnostics_(diagnostics) {}
 
-  // Each track goes its own way: what one motion asks of the steps behind it does not depend on others.
+  // Each motion for itself: what it asks of the steps behind it does not depend on others.
   void Run() {
     for (size_t i = 0; i < graph_.nodes.size(); ++i) {
-      const Node& n = graph_.nodes[i];
-      if (n.kind == NodeKind::kMotion) Go(n, {NodeId(i), {}, {}, Rigid(n)});
-    }
-    while (!todo_.empty()) {
-      auto [id, track] = std::move(todo_.back());
-      todo_.pop_back();
-      Follow(id, std::move(track));
+      if (graph_.nodes[i].kind == NodeKind::kMotion) Follow(NodeId(i));
     }
   }
 
  private:
-  void Go(const Node& from, const Track& track) {
-    for (const NodeId next : from.next) {
-      if (seen_.emplace(next, track).second) todo_.emplace_back(next, track);
+  // Up to the next motions.
+  void Follow(NodeId motion) {
+    motion_ = motion;
+    news_.clear();
+    News begin;
+    begin.quiet = true;
+    const Scope rigid = Rigid(graph_[motion]);
+    if (!rigid.empty()) begin.ready = rigid;
+    Go(graph_[motion].next, begin);
+    while (!todo_.empty()) {
+      const NodeId id = todo_.back();
+      todo_.pop_back();
+      const Node& n = graph_[id];
+      if (n.kind == NodeKind::kMotion) continue;
+      News after = news_.at(id);
+      if (n.kind == NodeKind::kMessage) Hear(id, n, after);
+      // Robots of other threads join: they, too, must learn that all motions have ended.
+      if (n.kind == NodeKind::kJoin) Join(after);
+      Go(n.next, after);
+    }
+    for (const auto& [id, news] : news_) {
+      const Node& n = graph_[id];
+      if (n.kind == NodeKind::kMessage) CheckMessage(id, n, news);
+      if (n.kind == NodeKind::kMotion) CheckMotion(n, news);
     }
   }
 
-  void Follow(NodeId id, Track track) {
-    const Node& n = graph_[id];
-    if (n.kind == NodeKind::kMotion) return Move(n, track);
-    if (n.kind == NodeKind::kMessage) Say(id, n, track);
-    // Robots of other threads join: they, too, must learn that all motions have ended.
-    if (n.kind == NodeKind::kJoin && track.first.valid()) {
-      track.ready = std::exchange(track.informed, {});
-      track.first = {};
+  void Go(const std::vector<NodeId>& to, const News& news) {
+    for (const NodeId next : to) {
+      const auto [it, fresh] = news_.emplace(next, news);
+      if (!fresh) {
+        const News before = it->second;
+        Meet(it->second, news);
+        if (it->second == before) continue;
+      }
+      todo_.push_back(next);
     }
-    Go(n, track);
+  }
+
+  static void Hear(NodeId id, const Node& n, News& news) {
+    if (news.quiet) {
+      news.informed.clear();
+      if (!news.first.valid()) news.first = id;
+    }
+    news.informed.insert({n.from, n.to});
+    news.quiet = false;
+    news.spoken = true;
+  }
+
+  static void Join(News& news) {
+    news.joined = true;
+    if (!news.spoken) return;
+    // Who was told in its thread knows; where nobody was, who could not be interrupted.
+    if (news.quiet) {
+      news.informed = news.ready ? Both(news.informed, *news.ready) : news.informed;
+    }
+    news.ready = std::exchange(news.informed, {});
+    news.told = true;
+    news.first = {};
+    news.quiet = true;
+    news.spoken = false;
   }
 
   // The robots whose motion cannot be interrupted.
@@ -68,37 +129,40 @@ class Synchronisation {
     return rigid;
   }
 
-  void Say(NodeId id, const Node& n, Track& track) {
-    if (!track.first.valid()) {
-      track.first = id;
-      CheckReady(id, n, track);
-    } else if (!track.informed.contains(n.from)) {
-      diagnostics_
-          .Report(Kind::kChoreoUnordered, n.span,
-                  fmt::format("`{}` may send this before another message arrives", graph_.NameOf(n.from)))
-          .At(graph_[track.first].span, "nothing orders it behind this message")
-          .At(graph_[track.motion].span, "both follow this motion")
-          .Note(fmt::format("`{}` has heard from nobody since the motion", graph_.NameOf(n.from)))
-          .Help(fmt::format("let `{}` wait for a message first", graph_.NameOf(n.from)));
-    }
-    track.informed.insert({n.from, n.to});
+  void CheckMessage(NodeId id, const Node& n, const News& news) {
+    if (news.quiet) CheckReady(id, n, news);
+    if (!news.spoken || news.informed.contains(n.from)) return;
+    diagnostics_
+        .Report(Kind::kChoreoUnordered, n.span,
+                fmt::format("`{}` may send this before another message arrives", graph_.NameOf(n.from)))
+        .At(graph_[news.first].span, "nothing orders it behind this message")
+        .At(graph_[motion_].span, "both follow this motion")
+        .Note(fmt::format("`{}` has heard from nobody since the motion", graph_.NameOf(n.from)))
+        .Help(fmt::format("let `{}` wait for a message first", graph_.NameOf(n.from)));
   }
 
   // Who sends first behind a motion must know that it has ended.
-  void CheckReady(NodeId id, const Node& n, const Track& track) {
-    if (track.ready.empty() || track.ready.contains(n.from)) return;
-    if (graph_.equal_durations && EndsWithIt(id, n.from)) return;
-    const RobotId robot = *track.ready.begin();
-    const Node& motion = graph_[track.motion];
-    const auto part = std::ranges::find_if(motion.parts, [&](const Part& p) { return p.robot == robot; });
-    auto& report = diagnostics_.Report(Kind::kChoreoNotReady, n.span,
-                                       fmt::format("`{}` sends while `{}` may still be moving",
-                                                   graph_.NameOf(n.from), graph_.NameOf(robot)));
-    report.At(part == motion.parts.end() ? motion.span : part->span, "this motion cannot be interrupted")
-        .Help(fmt::format("let `{}` say when it has finished: it should send the first message",
-                          graph_.NameOf(robot)));
-    if (!graph_.equal_durations && EndsWithIt(id, n.from))
-      report.Help("`option equal_durations` admits motions of one fixed duration");
+  void CheckReady(NodeId id, const Node& n, const News& news) {
+    if (!news.ready || news.ready->contains(n.from)) return;
+    const bool together = !news.told && EndsWithIt(id, n.from);
+    if (graph_.equal_durations && together) return;
+    const Node& motion = graph_[motion_];
+    const auto part =
+        std::ranges::find_if(motion.parts, [](const Part& p) { return !p.duration.interruptible; });
+    const std::string who = !news.told && part != motion.parts.end() ? "`" + graph_.NameOf(part->robot) + "`"
+                                                                     : graph_.Names(motion.scope);
+    auto& report = diagnostics_.Report(
+        Kind::kChoreoNotReady, n.span,
+        fmt::format("`{}` sends while {} may still be moving", graph_.NameOf(n.from), who));
+    if (news.told) {
+      report.At(motion.span, "the last motion of another thread, whose end is told in that thread only");
+      if (!news.ready->empty())
+        report.Help(fmt::format("let one of {} send the first message", graph_.Names(*news.ready)));
+    } else {
+      report.At(part->span, "this motion cannot be interrupted")
+          .Help(fmt::format("let {} say when it has finished: it should send the first message", who));
+      if (together) report.Help("`option equal_durations` admits motions of one fixed duration");
+    }
   }
 
   // Did the robot itself last do what cannot be interrupted? Then it knows when that ended; where motions of
@@ -130,24 +194,28 @@ class Synchronisation {
     return found;
   }
 
-  void Move(const Node& n, const Track& track) {
-    const Node& before = graph_[track.motion];
-    // A robot that is alone knows its own progress.
-    if (n.scope.size() == 1 && before.scope == n.scope) return;
+  void CheckMotion(const Node& n, const News& news) {
+    const Node& before = graph_[motion_];
+    // A robot that is alone in its thread knows its own progress, but not that of others that it joins.
+    if (n.scope.size() == 1 && before.scope == n.scope && !news.joined) return;
     if (std::ranges::none_of(n.scope, [&](RobotId r) { return before.scope.contains(r); })) return;
-    if (!track.first.valid()) {
+    if (news.quiet) {
       // Everybody knows when its own motion has ended, and all of them ended at one instant.
-      if (graph_.equal_durations && Rigid(before) == before.scope) return;
-      diagnostics_
-          .Report(Kind::kChoreoMotionAfterMotion, n.span,
-                  fmt::format("{} change their motion without a message", graph_.Names(n.scope)))
-          .At(before.span, "until here they do this")
-          .Help("let a robot whose motion has ended tell the others");
+      if (graph_.equal_durations && !news.told && Rigid(before) == before.scope && !news.spoken) return;
+      auto& report = diagnostics_.Report(
+          Kind::kChoreoMotionAfterMotion, n.span,
+          fmt::format("{} change{} {} motion without a message", graph_.Names(n.scope),
+                      n.scope.size() == 1 ? "s" : "", n.scope.size() == 1 ? "its" : "their"));
+      report.At(before.span, n.scope == before.scope
+                                 ? n.scope.size() == 1 ? "until here it does this" : "until here they do this"
+                                 : "this motion ends before");
+      if (news.joined) report.Note("robots of different threads do not know when the others are through");
+      report.Help("let a robot whose motion has ended tell the others");
       return;
     }
     Scope deaf;
     for (const RobotId r : before.scope) {
-      if (!track.informed.contains(r)) deaf.insert(r);
+      if (!news.informed.contains(r)) deaf.insert(r);
     }
     if (deaf.empty()) return;
     diagnostics_
@@ -160,8 +228,9 @@ class Synchronisation {
 
   const Graph& graph_;
   diag::Diagnostics& diagnostics_;
-  std::vector<std::pair<NodeId, Track>> todo_;
-  std::set<std::pair<NodeId, Track>> seen_;
+  NodeId motion_;
+  std::map<NodeId, News> news_;
+  std::vector<NodeId> todo_;
   std::vector<std::vector<NodeId>> before_;  // predecessors
 };
 

@@ -23,8 +23,15 @@ class Time {
     for (const Node& n : graph_.nodes) {
       if (n.kind == NodeKind::kMotion) Step(n);
     }
-    const auto still = [](const Node& n) { return n.kind != NodeKind::kMotion; };
-    const auto silent = [&](const Node& n) { return still(n) && n.kind != NodeKind::kMessage; };
+    // Time passes in a step if every motion of it may last.
+    const auto still = [](const Node& n) {
+      return n.kind != NodeKind::kMotion || std::ranges::any_of(n.parts, [](const Part& p) {
+               return p.duration.most && p.duration.most->IsZero();
+             });
+    };
+    const auto silent = [](const Node& n) {
+      return n.kind != NodeKind::kMotion && n.kind != NodeKind::kMessage;
+    };
     const NodeId unguarded = Cycle(silent);
     if (unguarded.valid()) {
       diagnostics_
@@ -34,7 +41,9 @@ class Time {
     }
     if (const NodeId zeno = Cycle(still); zeno.valid()) {
       diagnostics_.Report(Kind::kChoreoZeno, graph_[zeno].span, "this loop may go round without time passing")
-          .Note("there are messages in it, but no motion: infinitely many of them fit into no time at all");
+          .Note(
+              "there are messages in it, but no motion that lasts: infinitely many of them fit into no time "
+              "at all");
     }
   }
 

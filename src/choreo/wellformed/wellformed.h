@@ -14,8 +14,8 @@ void CheckWellFormed(const Graph& graph, diag::Diagnostics& diagnostics);
 void CheckChoices(const Graph& graph, diag::Diagnostics& diagnostics);
 
 /// Rule 3: unique minimal communication after a motion, sender readiness, total synchronisation between
-/// motions. What may follow each motion is followed along the graph; loops are closed once nothing new can
-/// arrive. Cost: nodes times motions that are open at once.
+/// motions. From each motion a data flow goes along the graph up to the next ones: what has been said on
+/// every way. Cost: linear, but for choices and threads between motions.
 void CheckSynchronisation(const Graph& graph, diag::Diagnostics& diagnostics);
 
 /// Rule 4: at most one motion of a step cannot be interrupted, and the others last as long; no loop without

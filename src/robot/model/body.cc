@@ -37,6 +37,8 @@ class Filler {
       if (const auto* dynamics = std::get_if<DynamicsDef>(&item)) Dynamics(*dynamics);
     }
     for (const Variable& v : body_.states) body_.coupling.insert(v.term);
+    for (const Variable& v : body_.states) body_.sensed.insert(v.term);
+    for (const Variable& v : body_.inputs) body_.sensed.insert(v.term);
   }
 
  private:
@@ -93,6 +95,7 @@ class Filler {
     } else if (value.kind != ValueKind::kQuantity) {
       value = e_.WrongType(span, value, "a quantity");
     }
+    body_.sensed.merge(VariablesOf(arena_, value.terms));
     Claim(v.name, std::move(value));
   }
 

@@ -105,6 +105,17 @@ std::optional<Pose> Evaluator::Place(ExprId expr, const Scope& scope, const Pose
 
 Value Evaluator::Evaluate(ExprId expr, const Scope& scope) { return Visit(pool_[expr], scope); }
 
+// Exact numbers may grow without bound.
+Value Evaluator::Bounded(const Expr& e, Value v) {
+  constexpr size_t kMostDigits = 2000;
+  for (const TermId t : v.terms) {
+    if (!arena_.IsNumber(t) || arena_.number(t).Digits() <= kMostDigits) continue;
+    diagnostics_.Report(Kind::kSyntaxNumber, e.span, "this number has too many digits");
+    return {};
+  }
+  return v;
+}
+
 Value Evaluator::Visit(const Expr& e, const Scope& scope) {
   switch (e.kind) {
     case ExprKind::kError:
@@ -121,11 +132,11 @@ Value Evaluator::Visit(const Expr& e, const Scope& scope) {
     case ExprKind::kField:
       return Member(e, scope);
     case ExprKind::kCall:
-      return Functions(*this).Call(e, scope);
+      return Bounded(e, Functions(*this).Call(e, scope));
     case ExprKind::kUnary:
       return Unary(e, scope);
     case ExprKind::kBinary:
-      return Binary(e, scope);
+      return Bounded(e, Binary(e, scope));
     case ExprKind::kTuple:
       return Tuple(e, scope);
     case ExprKind::kString:
@@ -141,7 +152,10 @@ Value Evaluator::Visit(const Expr& e, const Scope& scope) {
 
 Value Evaluator::Literal(const Expr& e) {
   const auto number = Rational::Parse(e.text);
-  if (!number) return {};
+  if (!number) {
+    diagnostics_.Report(Kind::kSyntaxNumber, e.span, "this number is too large or too small to be read");
+    return {};
+  }
   Value v = Quantity(arena_.Number(arena_.Real(), *number), {});
   v.any_dimension = number->IsZero();
   return v;
@@ -305,7 +319,7 @@ Value Evaluator::Product(const Expr& e, const Value& a, const Value& b) {
   Value result = scaled ? b : a;
   for (TermId& t : result.terms) t = arena_.Mul(factor.terms[0], t);
   result.dimension = a.dimension + b.dimension;
-  result.any_dimension = a.any_dimension || b.any_dimension;
+  result.any_dimension = a.any_dimension && b.any_dimension;
   result.squared.reset();
   return result;
 }
@@ -321,7 +335,7 @@ Value Evaluator::Quotient(const Expr& e, const Value& a, const Value& b) {
   Value result = a;
   for (TermId& t : result.terms) t = arena_.Divide(t, b.terms[0]);
   result.dimension = a.dimension - b.dimension;
-  result.any_dimension = a.any_dimension || b.any_dimension;
+  result.any_dimension = a.any_dimension && b.any_dimension;
   result.squared.reset();
   return result;
 }

@@ -49,6 +49,7 @@ class Evaluator {
  private:
   friend class Functions;
   Value Visit(const lang::Expr& e, const Scope& scope);
+  Value Bounded(const lang::Expr& e, Value v);
   Value Literal(const lang::Expr& e);
   Value WithUnit(const lang::Expr& e);
   Value Named(const lang::Expr& e, const Scope& scope);

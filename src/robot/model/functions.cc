@@ -215,7 +215,7 @@ Value Functions::Power(Arguments& a) {
   for (int i = 0; i < n; ++i) product = arena_.Mul(product, a.values[0].terms[0]);
   const Dimension d = a.values[0].dimension;
   Value v = Quantity(product, {d.length * n, d.time * n, d.angle * n});
-  v.any_dimension = a.values[0].any_dimension;
+  v.any_dimension = n > 0 && a.values[0].any_dimension;
   return v;
 }
 
@@ -224,6 +224,7 @@ Value Functions::Near(Arguments& a) {
   if (!NeedSame(a, 0, 1)) return {};
   const Value& v = a.values[0];
   if (v.kind != ValueKind::kQuantity && !NeedVector(a, 0)) return {};
+  if (!NeedQuantity(a, 2)) return {};
   if (!v.any_dimension && !Need(a, 2, v.dimension, fmt::format("a tolerance in {}", UnitText(v.dimension))))
     return {};
   const TermId tolerance = a.values[2].terms[0];
@@ -250,10 +251,52 @@ Value Functions::Between(Arguments& a) {
   return Boolean(arena_.And(arena_.Le(arena_.Sub(low, slack), v), arena_.Le(v, arena_.Add(high, slack))));
 }
 
+// Is a < b for certain, or is that not known?
+bool Functions::Below(TermId a, TermId b) { return arena_.Lt(a, b) == arena_.True(); }
+
+Value Functions::Solid(const Arguments& a, Shape shape) {
+  const TermId zero = Number(Rational(0));
+  const auto& s = shape.sizes;
+  bool empty = false;
+  switch (shape.kind) {
+    case ShapeKind::kSphere:
+    case ShapeKind::kHalfSphere:
+      empty = Below(s[0], zero);
+      break;
+    case ShapeKind::kCylinder:
+    case ShapeKind::kCapsule:
+      empty = Below(s[0], zero) || Below(s[2], s[1]);
+      break;
+    case ShapeKind::kPrism:
+      empty = Below(s[1], s[0]);
+      break;
+    case ShapeKind::kHalfSpace:
+      empty = shape.faces[0].length == zero;
+      break;
+    case ShapeKind::kUnion:
+    case ShapeKind::kIntersection:
+      empty = shape.parts.empty();
+      break;
+    case ShapeKind::kBox:
+      break;
+  }
+  if (!empty) return ShapeOf(std::move(shape));
+  e_.diagnostics_.Report(Kind::kRobotType, a.call.span, "this shape is empty")
+      .Note("what takes no space at all would never meet anything");
+  return {};
+}
+
+bool Functions::NeedPositive(const Arguments& a, size_t i) {
+  const TermId t = a.values[i].terms[0];
+  if (!arena_.IsNumber(t) || arena_.number(t) > Rational(0)) return true;
+  e_.diagnostics_.Report(Kind::kRobotType, SpanOf(a, i), "this must be more than 0");
+  return false;
+}
+
 // linear(t, a, b, T): from a at 0 to b at T.
 Value Functions::Linear(Arguments& a) {
   if (!Need(a, 0, kTime, "a time") || !NeedQuantity(a, 1) || !NeedSame(a, 1, 2) ||
-      !Need(a, 3, kTime, "a time"))
+      !Need(a, 3, kTime, "a time") || !NeedPositive(a, 3))
     return {};
   const TermId share = arena_.Divide(a.values[0].terms[0], a.values[3].terms[0]);
   Value v = a.values[1];
@@ -265,7 +308,7 @@ Value Functions::Linear(Arguments& a) {
 // The same, at rest at both ends: 3 s^2 - 2 s^3.
 Value Functions::SmoothStep(Arguments& a) {
   if (!Need(a, 0, kTime, "a time") || !NeedQuantity(a, 1) || !NeedSame(a, 1, 2) ||
-      !Need(a, 3, kTime, "a time"))
+      !Need(a, 3, kTime, "a time") || !NeedPositive(a, 3))
     return {};
   const TermId s = arena_.Divide(a.values[0].terms[0], a.values[3].terms[0]);
   const TermId ramp =

@@ -27,6 +27,7 @@ class Functions {
   // Checked access to arguments; a failed check was reported.
   bool Need(const Arguments& args, size_t i, lang::Dimension dimension, std::string_view what);
   bool NeedQuantity(const Arguments& args, size_t i);
+  bool NeedPositive(const Arguments& args, size_t i);
   bool NeedVector(const Arguments& args, size_t i);
   bool NeedFrame(const Arguments& args, size_t i);
   bool NeedShape(const Arguments& args, size_t i);
@@ -35,6 +36,9 @@ class Functions {
   diag::Span SpanOf(const Arguments& args, size_t i) const { return e_.SpanOf(args.call.args[i + 1]); }
   TermId Number(const expr::Rational& value) { return arena_.Number(arena_.Real(), value); }
   static Vector XYZ(const Value& v);
+  bool Below(TermId a, TermId b);
+  /// The shape, unless it has no points.
+  Value Solid(const Arguments& args, Shape shape);
   Value Norm(const std::vector<TermId>& v, lang::Dimension dimension);
 
   // numbers

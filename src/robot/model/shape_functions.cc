@@ -17,7 +17,7 @@ Value Functions::Ball(Arguments& a) {
   s.kind = ShapeKind::kSphere;
   s.frame = at.kind == ValueKind::kPoint ? Translation(arena_, XYZ(at)) : *at.pose;
   s.sizes = {a.values[1].terms[0]};
-  return ShapeOf(std::move(s));
+  return Solid(a, std::move(s));
 }
 
 // cylinder(frame, r, h) stands on its frame; cylinder(frame, r, from, to). A capsule surrounds its axis.
@@ -31,7 +31,7 @@ Value Functions::Cylinder(Arguments& a) {
   s.frame = *a.values[0].pose;
   s.sizes = {a.values[1].terms[0], Number(Rational(0)), a.values.back().terms[0]};
   if (a.values.size() == 4) s.sizes[1] = a.values[2].terms[0];
-  return ShapeOf(std::move(s));
+  return Solid(a, std::move(s));
 }
 
 // box(frame, corner, opposite corner)
@@ -47,7 +47,7 @@ Value Functions::Box(Arguments& a) {
     s.sizes.push_back(arena_.Apply(Elementary::kMin, {(*low)[i], (*high)[i]}));
     s.sizes.push_back(arena_.Apply(Elementary::kMax, {(*low)[i], (*high)[i]}));
   }
-  return ShapeOf(std::move(s));
+  return Solid(a, std::move(s));
 }
 
 // prism(frame, from, to, (x, y), ...): a convex polygon, counterclockwise.
@@ -85,7 +85,7 @@ Value Functions::Prism(Arguments& a) {
     }
     s.faces.push_back(f);
   }
-  return ShapeOf(std::move(s));
+  return Solid(a, std::move(s));
 }
 
 // hexagon(frame, r1, r2, h): -r1 <= u_i <= r2 for three directions in the plane, 120 degrees apart, the last
@@ -108,7 +108,7 @@ Value Functions::Hexagon(Arguments& a) {
     s.faces.push_back({u, a.values[2].terms[0], one});
     s.faces.push_back({{arena_.Neg(u[0]), arena_.Neg(u[1]), zero}, a.values[1].terms[0], one});
   }
-  return ShapeOf(std::move(s));
+  return Solid(a, std::move(s));
 }
 
 // half_space(frame, n, offset): n . v >= offset
@@ -126,7 +126,7 @@ Value Functions::HalfSpace(Arguments& a) {
   s.faces.push_back({{arena_.Neg(n[0]), arena_.Neg(n[1]), arena_.Neg(n[2])},
                      arena_.Neg(a.values[2].terms[0]),
                      arena_.Apply(Elementary::kSqrt, {Dot(arena_, n, n)})});
-  return ShapeOf(std::move(s));
+  return Solid(a, std::move(s));
 }
 
 // half_sphere(frame, r): the upper half
@@ -138,7 +138,7 @@ Value Functions::HalfSphere(Arguments& a) {
   s.frame = *a.values[0].pose;
   s.sizes = {a.values[1].terms[0]};
   s.faces.push_back({{zero, zero, arena_.Neg(one)}, zero, one});
-  return ShapeOf(std::move(s));
+  return Solid(a, std::move(s));
 }
 
 Value Functions::Combined(Arguments& a) {
@@ -149,17 +149,19 @@ Value Functions::Combined(Arguments& a) {
     if (!NeedShape(a, i)) return {};
     s.parts.push_back(*a.values[i].shape);
   }
-  return ShapeOf(std::move(s));
+  return Solid(a, std::move(s));
 }
 
 Value Functions::Inflated(Arguments& a) {
   if (!NeedShape(a, 0) || !Need(a, 1, kLength, "a length")) return {};
   const TermId margin = a.values[1].terms[0];
-  if (arena_.IsNumber(margin) && arena_.number(margin) < Rational(0)) {
+  const TermId zero = Number(Rational(0));
+  if (Below(margin, zero)) {
     e_.diagnostics_.Report(Kind::kRobotType, SpanOf(a, 1), "a shape cannot be inflated by less than nothing");
     return {};
   }
-  return ShapeOf(Inflate(arena_, *a.values[0].shape, margin));
+  // By less than nothing is by nothing, so that the result never is the smaller one.
+  return ShapeOf(Inflate(arena_, *a.values[0].shape, arena_.Apply(Elementary::kMax, {margin, zero})));
 }
 
 }  // namespace rondo::robot

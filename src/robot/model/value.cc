@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <unordered_set>
 
 #include "expr/substitute.h"
 
@@ -45,14 +47,35 @@ Value ShapeOf(Shape shape) {
   return v;
 }
 
-bool IsConstant(const Arena& arena, const Value& value) {
-  bool constant = true;
+std::set<TermId> VariablesOf(const Arena& arena, const std::vector<TermId>& terms) {
+  std::set<TermId> variables;
   std::unordered_set<TermId> seen;
-  for (const TermId t : value.terms) {
-    expr::VisitPostorder(arena, t, seen,
-                         [&](TermId part) { constant = constant && arena.op(part) != expr::Op::kVariable; });
+  for (const TermId t : terms) {
+    expr::VisitPostorder(arena, t, seen, [&](TermId part) {
+      if (arena.op(part) == expr::Op::kVariable) variables.insert(part);
+    });
   }
-  return constant;
+  return variables;
+}
+
+bool IsConstant(const Arena& arena, const Value& value) { return VariablesOf(arena, value.terms).empty(); }
+
+bool IsConstant(const Arena& arena, const Pose& pose) {
+  std::vector<TermId> terms(pose.origin.begin(), pose.origin.end());
+  for (const Vector& row : pose.rotation) terms.insert(terms.end(), row.begin(), row.end());
+  return VariablesOf(arena, terms).empty();
+}
+
+bool IsConstant(const Arena& arena, const Shape& shape) {
+  std::vector<TermId> terms = shape.sizes;
+  for (const Face& f : shape.faces) {
+    terms.insert(terms.end(), f.normal.begin(), f.normal.end());
+    terms.push_back(f.offset);
+  }
+  const bool own = shape.kind == ShapeKind::kUnion || shape.kind == ShapeKind::kIntersection ||
+                   IsConstant(arena, shape.frame);
+  return own && VariablesOf(arena, terms).empty() &&
+         std::ranges::all_of(shape.parts, [&](const Shape& part) { return IsConstant(arena, part); });
 }
 
 std::string UnitText(lang::Dimension d) {

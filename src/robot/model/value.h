@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -45,8 +46,13 @@ Value PointAt(const Vector& p);
 Value FrameAt(const Pose& pose);
 Value ShapeOf(Shape shape);
 
+/// The variables that terms depend on.
+std::set<TermId> VariablesOf(const Arena& arena, const std::vector<TermId>& terms);
+
 /// Does it depend on no variable?
 bool IsConstant(const Arena& arena, const Value& value);
+bool IsConstant(const Arena& arena, const Pose& pose);
+bool IsConstant(const Arena& arena, const Shape& shape);
 
 /// "a length", "a point", "coordinates in m"; for messages.
 std::string Describe(const Value& value);

@@ -49,11 +49,13 @@ class Builder {
       Put(i, i);
     }
     for (const ObstacleDef& o : source_.obstacles) {
-      if (auto shape = e_.ShapeAt(o.shape, world_->scope, "a shape"))
-        world_->obstacles.push_back({o.name, std::move(*shape)});
+      auto shape = e_.ShapeAt(o.shape, world_->scope, "a shape");
+      if (!shape) continue;
+      if (!IsConstant(arena_, *shape)) Moves(e_.SpanOf(o.shape), "an obstacle stands still");
+      world_->obstacles.push_back({o.name, std::move(*shape)});
     }
     const auto coordinate = [&](const char* name) {
-      return arena_.Variable(arena_.Declare(fmt::format("point.{}", name), {}, arena_.Real()));
+      return arena_.Variable(arena_.Declare(fmt::format("world.{}", name), {}, arena_.Real()));
     };
     world_->point = {coordinate("x"), coordinate("y"), coordinate("z")};
     world_->point_scope.outer = &world_->scope;
@@ -95,6 +97,8 @@ class Builder {
       Mount(c, parent, body);
     } else if (c.place.valid()) {
       if (auto pose = e_.Place(c.place, world_->scope, body.self)) body.self = *pose;
+      if (!IsConstant(arena_, body.self))
+        Moves(e_.SpanOf(c.place), "what is put somewhere in the world stands still there");
     }
     if (type == types_.end()) {
       std::vector<std::string> names;
@@ -109,6 +113,13 @@ class Builder {
       FillBody(*type->second, given, world_->clock, body, e_);
     }
     world_->scope.names[c.name.text] = SeenFromOutside(body);
+  }
+
+  void Moves(diag::Span span, std::string message) {
+    e_.diagnostics()
+        .Report(Kind::kRobotType, span, std::move(message))
+        .Note("this depends on the state of a robot")
+        .Help("a robot that is carried by another one stands on a mount: `on cart.top`");
   }
 
   void Given(const Argument& a, const RobotDef& type, Arguments& given) {

@@ -33,6 +33,9 @@ struct Body {
   std::map<std::string, Pose, std::less<>> mounts;
   Scope scope;  ///< what its own expressions may use
 
+  /// What it can know by itself: its states, its inputs, and what its inputs are determined by.
+  std::set<TermId> sensed;
+
   /// Every number that its shapes depend on, its own or of those that carry it.
   std::set<TermId> coupling;
 };
