@@ -1,28 +1,22 @@
-// Any bytes: reading, building graphs, checking and projecting ends.
+// Any bytes as a `.rondo` file: reading, checking, projecting, drawing ends; formatting twice is formatting
+// once.
 #include <cstdint>
 
-#include "choreo/graph/lower.h"
-#include "choreo/project/project.h"
+#include "choreo/syntax/format.h"
 #include "choreo/syntax/parser.h"
-#include "choreo/wellformed/wellformed.h"
-#include "diag/render.h"
+#include "choreo_all.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace rondo;
   diag::SourceSet sources;
   diag::Diagnostics diagnostics;
   choreo::Module module;
-  expr::Arena arena;
-  choreo::Parse(sources, sources.Add("input", std::string(reinterpret_cast<const char*>(data), size)), module,
-                diagnostics);
-  choreo::Declarations declarations(module, arena, diagnostics);
-  for (const choreo::Graph& graph : choreo::Lower(module, declarations)) {
-    choreo::CheckWellFormed(graph, diagnostics);
-    for (size_t r = 0; r < graph.robots.size(); ++r)
-      choreo::Project(graph, module.exprs, choreo::RobotId(r), diagnostics);
+  const diag::FileId file = sources.Add("input", std::string(reinterpret_cast<const char*>(data), size));
+  choreo::Parse(sources, file, module, diagnostics);
+  if (!diagnostics.has_errors()) {
+    const std::string once = choreo::Format(sources, file, choreo::Tokens(sources, file, diagnostics));
+    const diag::FileId again = sources.Add("again", once);
+    CHECK(choreo::Format(sources, again, choreo::Tokens(sources, again, diagnostics)) == once) << once;
   }
-  size_t length = 0;
-  for (const diag::Diagnostic& d : diagnostics.Sorted())
-    length += diag::RenderText(sources, d, diag::Colour::kOff).size();
-  return length == 1 ? 1 : 0;
+  return CheckEverything(sources, module, diagnostics);
 }

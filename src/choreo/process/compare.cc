@@ -26,7 +26,6 @@ void Wrong::Report(diag::Diagnostics& diagnostics, Span choreography) const {
 Compare::Compare(const Flow& flow, Graph& graph, Declarations& declarations)
     : flow_(flow),
       graph_(graph),
-      declarations_(declarations),
       evaluator_(declarations.evaluator()),
       arena_(evaluator_.arena()),
       calls_(graph, declarations, flow.source->loose_names) {}

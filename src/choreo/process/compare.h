@@ -68,7 +68,6 @@ class Compare {
 
   const Flow& flow_;
   Graph& graph_;
-  Declarations& declarations_;
   robot::Evaluator& evaluator_;
   expr::Arena& arena_;
   Calls calls_;

@@ -30,7 +30,7 @@ Duration Whole::StepOf(const Node& motion) const {
   return all;
 }
 
-Whole::State Whole::Replace(const State& state, size_t i, std::vector<NodeId> by) {
+Whole::State Whole::Replace(const State& state, size_t i, const std::vector<NodeId>& by) {
   State next = state;
   next.erase(next.begin() + static_cast<std::ptrdiff_t>(i));
   for (const NodeId id : by) next.push_back({id, false, 0});

@@ -34,7 +34,7 @@ class Whole {
 
  private:
   Duration StepOf(const Node& motion) const;
-  static State Replace(const State& state, size_t i, std::vector<NodeId> by);
+  static State Replace(const State& state, size_t i, const std::vector<NodeId>& by);
 
   const Graph& graph_;
   Ticks ticks_;
