@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "choreo/graph/declarations.h"
+#include "choreo/process/flow.h"
 #include "choreo/project/project.h"
 
 /// Does each process do what its projection asks of it? (Definition 4.10 and Table 1 of the paper.)
@@ -24,11 +25,15 @@ struct SideCondition {
   std::vector<NodeId> at;
 };
 
-/// Types every process of the module. Reports, for each process, the first step that its projection does not
-/// allow: a message to or from the wrong robot, with the wrong label or payload, a case that is missing,
-/// another motion or another argument, an alternative that the choreography does not offer. Follows processes
-/// and local types together, each pair once. The conditions that need a solver are returned; a process is
-/// well-typed if all of them are valid.
+/// Types one process. Reports the first step that the local type does not allow: a message to or from the
+/// wrong robot, with the wrong label or payload, a case that is missing, another motion or another argument, an
+/// alternative that the choreography does not offer. Follows process and type together, each pair once. The
+/// conditions that need a solver are returned; the process is well-typed if all of them are valid. `graph` gets
+/// the motions that only the process does.
+std::vector<SideCondition> TypeProcess(const Flow& flow, Graph& graph, const LocalType& type,
+                                       Declarations& declarations);
+
+/// Types every process of the module.
 std::vector<SideCondition> CheckProcesses(const Module& module, const std::vector<Typed>& typed,
                                           Declarations& declarations);
 
