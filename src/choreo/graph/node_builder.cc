@@ -180,20 +180,13 @@ std::map<RobotId, Span> NodeBuilder::Owners(ExprId id) const {
   return owners;
 }
 
-void NodeBuilder::NeedKnown(const std::vector<TermId>& terms, Span span, RobotId robot,
-                            const std::vector<Value>& told) {
+void NodeBuilder::NeedKnown(const std::vector<TermId>& terms, Span span, RobotId robot) {
   if (!robot.valid()) return;
-  std::set<TermId> unknown = robot::VariablesOf(evaluator_.arena(), terms);
-  std::erase_if(unknown, [&](TermId t) { return graph_.BodyOf(robot).sensed.contains(t); });
-  for (const Value& v : told) {
-    for (const TermId t : v.terms) unknown.erase(t);
-  }
-  if (unknown.empty()) return;
-  const expr::Arena& arena = evaluator_.arena();
+  const auto unknown = robot::UnknownTo(graph_.BodyOf(robot), evaluator_.arena(), terms, {});
+  if (!unknown) return;
   diagnostics_
       .Report(Kind::kChoreoGuardOwner, span,
-              fmt::format("`{}` cannot know this: it depends on `{}`", graph_.NameOf(robot),
-                          arena.symbol(arena.symbol_of(*unknown.begin())).name))
+              fmt::format("`{}` cannot know this: it depends on `{}`", graph_.NameOf(robot), *unknown))
       .Note("a robot knows its own state and inputs, and what it is told")
       .Help("let whoever knows it send a message first");
 }

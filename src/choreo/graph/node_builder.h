@@ -44,8 +44,7 @@ class NodeBuilder {
   /// A robot in scope; else invalid, after a report.
   RobotId Robot(const Name& name, const Scope& scope);
   /// Reports what a robot would have to know to evaluate this, but cannot.
-  void NeedKnown(const std::vector<expr::TermId>& terms, diag::Span span, RobotId robot,
-                 const std::vector<robot::Value>& told = {});
+  void NeedKnown(const std::vector<expr::TermId>& terms, diag::Span span, RobotId robot);
   /// The robots whose state an expression reads, and where.
   std::map<RobotId, diag::Span> Owners(ExprId id) const;
 

@@ -75,17 +75,15 @@ TermId Compare::KnownAt(const FlowNode& node) const {
 
 // A robot knows its own state and inputs, what it is told, and what it remembers.
 void Compare::NeedKnown(const FlowNode& node, const std::vector<TermId>& terms, Span span) {
-  std::set<TermId> unknown = robot::VariablesOf(arena_, terms);
+  std::vector<TermId> told;
+  for (const auto& [name, value] : ScopeOf(node).names)
+    told.insert(told.end(), value.terms.begin(), value.terms.end());
   const robot::Body& body = graph_.BodyOf(flow_.robot);
-  std::erase_if(unknown, [&](TermId t) { return body.sensed.contains(t); });
-  for (const auto& [name, value] : ScopeOf(node).names) {
-    for (const TermId t : value.terms) unknown.erase(t);
-  }
-  if (unknown.empty()) return;
+  const auto unknown = robot::UnknownTo(body, arena_, terms, told);
+  if (!unknown) return;
   evaluator_.diagnostics()
       .Report(Kind::kProcessStep, span,
-              fmt::format("`{}` cannot know this: it depends on `{}`", body.name.text,
-                          arena_.symbol(arena_.symbol_of(*unknown.begin())).name))
+              fmt::format("`{}` cannot know this: it depends on `{}`", body.name.text, *unknown))
       .Note("a robot knows its own state and inputs, and what it is told");
 }
 

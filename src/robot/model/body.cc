@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace rondo::robot {
 
 using diag::Kind;
@@ -180,6 +182,15 @@ bool HasParameter(const RobotDef& type, std::string_view name) {
 
 void FillBody(const RobotDef& type, const Arguments& given, TermId clock, Body& body, Evaluator& evaluator) {
   Filler(type, given, body, evaluator).Run(clock);
+}
+
+std::optional<std::string> UnknownTo(const Body& body, const Arena& arena, const std::vector<TermId>& terms,
+                                     const std::vector<TermId>& told) {
+  for (const TermId t : VariablesOf(arena, terms)) {
+    if (body.sensed.contains(t) || std::ranges::find(told, t) != told.end()) continue;
+    return arena.symbol(arena.symbol_of(t)).name;
+  }
+  return std::nullopt;
 }
 
 Value SeenFromOutside(const Body& body) {

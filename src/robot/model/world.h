@@ -40,6 +40,11 @@ struct Body {
   std::set<TermId> coupling;
 };
 
+/// The name of a variable that these terms depend on and that the robot can know neither by itself nor from
+/// `told`; nothing if there is none.
+std::optional<std::string> UnknownTo(const Body& body, const Arena& arena, const std::vector<TermId>& terms,
+                                     const std::vector<TermId>& told);
+
 struct Obstacle {
   Name name;
   Shape shape;
