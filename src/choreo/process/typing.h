@@ -26,10 +26,10 @@ struct SideCondition {
 };
 
 /// Types one process. Reports the first step that the local type does not allow: a message to or from the
-/// wrong robot, with the wrong label or payload, a case that is missing, another motion or another argument, an
-/// alternative that the choreography does not offer. Follows process and type together, each pair once. The
-/// conditions that need a solver are returned; the process is well-typed if all of them are valid. `graph` gets
-/// the motions that only the process does.
+/// wrong robot, with the wrong label or payload, a case that is missing, another motion or another argument,
+/// an alternative that the choreography does not offer. Follows process and type together, each pair once.
+/// The conditions that need a solver are returned; the process is well-typed if all of them are valid.
+/// `graph` gets the motions that only the process does.
 std::vector<SideCondition> TypeProcess(const Flow& flow, Graph& graph, const LocalType& type,
                                        Declarations& declarations);
 

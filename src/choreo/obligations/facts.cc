@@ -1,0 +1,189 @@
+#include "choreo/obligations/facts.h"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <utility>
+
+namespace rondo::choreo {
+
+using expr::Arena;
+using expr::TermId;
+
+namespace {
+
+constexpr size_t kMostWays = 12;
+
+std::set<TermId> Modified(const Graph& graph, const Node& motion) {
+  std::set<TermId> modified;
+  for (const Part& p : motion.parts) {
+    const Instance& instance = graph.instances[p.instance];
+    const auto& states = graph.BodyOf(p.robot).states;
+    for (size_t i = 0; i < states.size(); ++i) {
+      if (instance.contract.modifies[i]) modified.insert(states[i].term);
+    }
+  }
+  return modified;
+}
+
+class Flow {
+ public:
+  Flow(const Graph& graph, Arena& arena) : graph_(graph), arena_(arena), facts_(graph.nodes.size()) {}
+
+  std::vector<Facts> Run() {
+    Reach(graph_.start, {Conjuncts(arena_, graph_.initially)});
+    while (!todo_.empty()) {
+      const NodeId id = todo_.back();
+      todo_.pop_back();
+      Step(id);
+    }
+    return std::move(facts_);
+  }
+
+ private:
+  bool About(TermId fact, const std::set<TermId>& variables) {
+    const auto [it, fresh] = variables_.try_emplace(fact);
+    if (fresh) it->second = robot::VariablesOf(arena_, {fact});
+    return std::ranges::any_of(it->second, [&](TermId v) { return variables.contains(v); });
+  }
+
+  // Adds ways by which a node is reached, from a node with this scope.
+  void Reach(NodeId id, const Facts& ways, const Scope& from = {}) {
+    const bool join = graph_[id].kind == NodeKind::kJoin;
+    Facts& known = join ? arrived_[id][from] : facts_[id.index()];
+    const Facts before = known;
+    known.insert(ways.begin(), ways.end());
+    if (known.size() > kMostWays || merged_.contains({id, from})) {
+      // What all ways have in common.
+      merged_.insert({id, from});
+      Conjunction common = *known.begin();
+      for (const Conjunction& way : known) {
+        Conjunction both;
+        std::ranges::set_intersection(common, way, std::inserter(both, both.end()));
+        common = std::move(both);
+      }
+      known = {common};
+    }
+    if (known != before) todo_.push_back(id);
+  }
+
+  void Step(NodeId id) {
+    const Node& n = graph_[id];
+    const Facts& facts = facts_[id.index()];
+    switch (n.kind) {
+      case NodeKind::kMotion:
+        return Reach(n.next[0], After(n, facts), n.scope);
+      case NodeKind::kChoice:
+        for (size_t b = 0; b < n.next.size(); ++b) Reach(n.next[b], With(facts, n.guard_terms[b]), n.scope);
+        return;
+      case NodeKind::kFork:
+        for (size_t b = 0; b < n.next.size(); ++b) Reach(n.next[b], Own(facts, n.threads[b]), n.threads[b]);
+        return;
+      case NodeKind::kMessage:
+      case NodeKind::kMerge:
+        return Reach(n.next[0], facts, n.scope);
+      case NodeKind::kJoin:
+        return Join(id, n);
+      case NodeKind::kEnd:
+        return;
+    }
+  }
+
+  Facts With(const Facts& facts, TermId formula) const {
+    Facts result;
+    for (Conjunction way : facts) {
+      way.merge(Conjuncts(arena_, formula));
+      if (!way.contains(arena_.False())) result.insert(std::move(way));
+    }
+    return result;
+  }
+
+  Facts After(const Node& motion, const Facts& facts) {
+    const std::set<TermId> modified = Modified(graph_, motion);
+    Facts result;
+    for (Conjunction way : facts) {
+      std::erase_if(way, [&](TermId fact) { return About(fact, modified); });
+      for (const Part& p : motion.parts)
+        way.merge(Conjuncts(arena_, graph_.instances[p.instance].contract.post));
+      result.insert(std::move(way));
+    }
+    return result;
+  }
+
+  // What is about robots of the thread alone: others go their own way meanwhile.
+  Facts Own(const Facts& facts, const Scope& thread) {
+    std::set<TermId> foreign;
+    for (size_t r = 0; r < graph_.robots.size(); ++r) {
+      if (thread.contains(RobotId(r))) continue;
+      for (const auto& v : graph_.world->bodies[r].states) foreign.insert(v.term);
+    }
+    Facts result;
+    for (Conjunction way : facts) {
+      std::erase_if(way, [&](TermId fact) { return About(fact, foreign); });
+      result.insert(std::move(way));
+    }
+    return result;
+  }
+
+  // The ways of all threads, combined, once each has arrived.
+  void Join(NodeId id, const Node& n) {
+    const auto fork = std::ranges::find_if(
+        graph_.nodes, [&](const Node& f) { return f.kind == NodeKind::kFork && f.join == id; });
+    Facts all{{}};
+    for (const Scope& thread : fork->threads) {
+      const auto arrived = arrived_[id].find(thread);
+      if (arrived == arrived_[id].end()) return;
+      if (all.size() * arrived->second.size() > 4 * kMostWays) continue;  // less is known
+      Facts combined;
+      for (const Conjunction& a : all) {
+        for (Conjunction c : arrived->second) {
+          c.insert(a.begin(), a.end());
+          combined.insert(std::move(c));
+        }
+      }
+      all = std::move(combined);
+    }
+    facts_[id.index()].insert(all.begin(), all.end());
+    Reach(n.next[0], all, n.scope);
+  }
+
+  const Graph& graph_;
+  Arena& arena_;
+  std::vector<Facts> facts_;
+  std::map<TermId, std::set<TermId>> variables_;
+  std::map<NodeId, std::map<Scope, Facts>> arrived_;  // at joins, by thread
+  std::set<std::pair<NodeId, Scope>> merged_;         // where only what is common is kept
+  std::vector<NodeId> todo_;
+};
+
+}  // namespace
+
+Conjunction Conjuncts(const Arena& arena, TermId formula) {
+  if (formula == arena.True()) return {};
+  if (arena.op(formula) != expr::Op::kAnd) return {formula};
+  const auto args = arena.args(formula);
+  return {args.begin(), args.end()};
+}
+
+TermId ToTerm(Arena& arena, const Facts& facts) {
+  std::vector<TermId> ways;
+  for (const Conjunction& way : facts) ways.push_back(arena.And(std::vector<TermId>(way.begin(), way.end())));
+  return arena.Or(ways);
+}
+
+TermId Kept(const Graph& graph, const Node& motion, const Facts& facts, Arena& arena) {
+  const std::set<TermId> modified = Modified(graph, motion);
+  Facts kept;
+  for (Conjunction way : facts) {
+    std::erase_if(way, [&](TermId fact) {
+      return std::ranges::any_of(robot::VariablesOf(arena, {fact}),
+                                 [&](TermId v) { return modified.contains(v); });
+    });
+    kept.insert(std::move(way));
+  }
+  return ToTerm(arena, kept);
+}
+
+std::vector<Facts> FactsOf(const Graph& graph, Arena& arena) { return Flow(graph, arena).Run(); }
+
+}  // namespace rondo::choreo

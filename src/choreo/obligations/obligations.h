@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "choreo/graph/graph.h"
+
+/// What must hold so that a well-formed choreography can be trusted: formulas for a solver (Section 4 of the
+/// paper: compatibility of motions; [T-Motion], [AGComp], [T-Sess]). Time is continuous: `clock` ranges over
+/// the duration of a motion.
+namespace rondo::choreo {
+
+enum class ObligationKind : uint8_t {
+  kInitial,       ///< bodies are apart, and stand nowhere in obstacles, when it begins
+  kPrecondition,  ///< of a motion
+  kAssumption,    ///< of a motion, from what the others of the step promise, all the time
+  kGuarantee,     ///< of a thread, all the time
+  kBody,          ///< within the footprint, all the time
+  kCollision,     ///< two robots of a step
+  kObstacle,      ///< a robot and an obstacle
+  kRegion,        ///< a robot keeps to the region of its thread
+  kFork,          ///< regions of threads are disjoint, and within the region of their parent
+  kThread,        ///< what a thread assumes follows from what the others guarantee
+  kTotalChoice,   ///< some guard holds
+  kMessage,       ///< the guard of a message, and what it carries
+  kContract,      ///< pre, during and post of a motion can hold
+};
+
+/// To show: `formula` has no solution; or, if `satisfiable`, that it has one.
+struct Obligation {
+  ObligationKind kind = ObligationKind::kContract;
+  diag::Span span;
+  std::string title;  ///< "precondition of `cart: Move(1 m)`"
+  bool satisfiable = false;
+  expr::TermId formula;
+};
+
+/// What cannot even be stated: a body or a region that is missing, assumptions that rest on each other.
+struct Missing {
+  diag::Span span;
+  std::string what;
+};
+
+struct Obligations {
+  std::vector<Obligation> all;  ///< equal formulas once
+  std::vector<Missing> missing;
+};
+
+/// Every obligation of a choreography that is well-formed. If all of them hold, nothing is missing and all
+/// contracts are kept, then no two bodies ever meet, no body meets an obstacle, every motion begins where it
+/// may, every choice has an alternative, and every message is as it says. Cost: squares of the number of
+/// robots in a step and of threads in a fork, linear in the graph otherwise.
+Obligations ObligationsOf(const Graph& graph, expr::Arena& arena);
+
+std::string_view KindName(ObligationKind kind);
+
+}  // namespace rondo::choreo
