@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <optional>
 #include <random>
 
@@ -25,7 +26,7 @@ class Texts {
     std::string text =
         "robot R {\n state x : length in [-9 m, 9 m]\n motion Idle() interruptible [0 s, inf) {}\n motion "
         "Go() noninterruptible [1 s, 1 s] {}\n motion Slow() noninterruptible [1 s, 2 s] {}\n motion "
-        "Rest() interruptible [0 s, 2 s] {}\n}\n"
+        "Rest() interruptible [0 s, 2 s] {}\n motion Mid() interruptible [1 s, 2 s] {}\n}\n"
         "world W { a: R b: R c: R }\nchoreography C in W {\n";
     if (Pick(4) == 0) text += "option equal_durations\n";
     return text + Steps("abc", 3) + "}\n";
@@ -52,7 +53,8 @@ class Texts {
   }
 
   std::string Motion() {
-    static constexpr std::array<const char*, 5> kMotions = {"Idle()", "Idle()", "Go()", "Slow()", "Rest()"};
+    static constexpr std::array<const char*, 6> kMotions = {"Idle()", "Idle()", "Go()",
+                                                            "Slow()", "Rest()", "Mid()"};
     return kMotions[Pick(kMotions.size())];
   }
 
@@ -82,8 +84,9 @@ class Texts {
         return text + "}\n";
       }
       case 4: {
-        const char last = robots.back();
-        const std::string rest = robots.substr(0, robots.size() - 1);
+        const size_t lone = Pick(robots.size());
+        const char last = robots[lone];
+        const std::string rest = robots.substr(0, lone) + robots.substr(lone + 1);
         return "parallel {\nthread {\n" + Steps(rest, depth - 1) + "}\nthread {\n" +
                Steps(std::string(1, last), depth - 1) + "}\n}\n";
       }
@@ -118,10 +121,16 @@ void ExpectAgreement(const Checked& checked, const std::string& text) {
   ASSERT_EQ(Join(DifferentTrace(Whole(checked.graphs[0]), team, 60)), "") << text;
 }
 
+// RONDO_SEEDS: how many, for a longer search.
+uint64_t Seeds() {
+  const char* text = std::getenv("RONDO_SEEDS");
+  return text == nullptr ? 20'000 : std::strtoull(text, nullptr, 10);
+}
+
 TEST(Choreo, ProjectionsAgreeWithTheWhole) {
   int good = 0;
   int branching = 0;
-  for (uint64_t seed = 0; seed < 20'000; ++seed) {
+  for (uint64_t seed = 0; seed < Seeds(); ++seed) {
     const std::string text = Texts(seed).Whole();
     const Checked checked(text);
     if (!checked.good()) continue;

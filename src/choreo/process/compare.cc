@@ -309,6 +309,18 @@ std::optional<Wrong> Compare::Moves(const FlowNode& node, const std::vector<Node
   return std::nullopt;
 }
 
+std::optional<Wrong> Compare::Stands(const FlowNode& node) {
+  const auto done = calls_.Resolve(flow_.robot, node.act->motion, ScopeOf(node));
+  if (!done) return std::nullopt;  // said already
+  const Instance& i = graph_.instances[*done];
+  const bool moves = std::ranges::count(i.contract.modifies, true) > 0;
+  if (i.duration.interruptible && i.duration.least.IsZero() && !moves) return std::nullopt;
+  return Wrong{Kind::kProcessMotion, node.act->motion.motion.span,
+               fmt::format("`{}` {}, but nobody moves here in the choreography", i.text,
+                           moves ? "moves the robot" : "cannot be interrupted at once"),
+               "wait without a motion, or with one that stands still"};
+}
+
 // The same motion with the same arguments; or [Sub-Motion]: weaker needs, stronger promises, less space, and
 // a duration that fits wherever that of the other one fits.
 std::optional<Wrong> Compare::Refines(const FlowNode& node, const Instance& done, const Instance& asked,

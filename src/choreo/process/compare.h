@@ -36,6 +36,9 @@ class Compare {
   /// refinement?
   std::optional<Wrong> Moves(const FlowNode& node, const std::vector<NodeId>& nodes);
 
+  /// Does a robot that waits stand still, and can it be interrupted at once?
+  std::optional<Wrong> Stands(const FlowNode& node);
+
   /// Is `goal` false wherever `hypothesis` holds, by simplification alone?
   bool Refuted(expr::TermId hypothesis, expr::TermId goal);
   /// Remembers a condition unless it is plainly true.

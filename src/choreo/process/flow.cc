@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <set>
 
 namespace rondo::choreo {
@@ -28,6 +29,7 @@ class Builder {
     for (const FlowNode& node : flow_.nodes) {
       for (const FlowCase& c : node.cases) CheckNames(*c.source);
     }
+    if (diagnostics_.errors() == errors) CheckAssigned();
     if (diagnostics_.errors() > errors) return std::nullopt;
     return std::move(flow_);
   }
@@ -165,6 +167,54 @@ class Builder {
                     fmt::format("`{}` names what a message carries, and is not assigned to", name.text))
             .At(name.span, "named here")
             .Help("choose another name");
+      }
+    }
+  }
+
+  static std::vector<FlowId> Next(const FlowNode& node) {
+    std::vector<FlowId> next;
+    for (const FlowCase& c : node.cases) next.push_back(c.next);
+    if (node.next.valid()) next.push_back(node.next);
+    if (node.otherwise.valid()) next.push_back(node.otherwise);
+    return next;
+  }
+
+  // A name of the process has a value on every way on which it is read.
+  void CheckAssigned() {
+    std::set<std::string> names;
+    for (const FlowNode& node : flow_.nodes) {
+      if (node.kind == FlowKind::kAssign) names.insert(node.act->variable.text);
+    }
+    if (names.empty()) return;
+    std::map<FlowId, std::set<std::string>> assigned{{flow_.start, {}}};
+    std::vector<FlowId> todo{flow_.start};
+    while (!todo.empty()) {
+      const FlowId id = todo.back();
+      todo.pop_back();
+      std::set<std::string> after = assigned.at(id);
+      if (flow_[id].kind == FlowKind::kAssign) after.insert(flow_[id].act->variable.text);
+      for (const FlowId next : Next(flow_[id])) {
+        const auto [it, fresh] = assigned.emplace(next, after);
+        const size_t before = it->second.size();
+        std::erase_if(it->second, [&](const std::string& name) { return !after.contains(name); });
+        if (fresh || it->second.size() != before) todo.push_back(next);
+      }
+    }
+    for (const auto& [id, known] : assigned) {
+      const FlowNode& node = flow_[id];
+      if (node.act == nullptr) continue;
+      std::vector<ExprId> read = node.act->values;
+      if (node.act->guard.valid()) read.push_back(node.act->guard);
+      for (const Argument& a : node.act->motion.args) read.push_back(a.value);
+      const lang::ExprPool& pool = declarations_.evaluator().pool();
+      while (!read.empty()) {
+        const lang::Expr& e = pool[read.back()];
+        read.pop_back();
+        read.insert(read.end(), e.args.begin(), e.args.end());
+        if (e.kind != lang::ExprKind::kName || !names.contains(e.text) || known.contains(e.text)) continue;
+        diagnostics_
+            .Report(Kind::kChoreoUndeclared, e.span, fmt::format("`{}` may have no value yet here", e.text))
+            .Help("assign to it on every way that leads here");
       }
     }
   }

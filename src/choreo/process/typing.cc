@@ -97,7 +97,8 @@ class Typing {
   // -- pairs
 
   // Each pair is looked at once: what comes back to it is assumed to agree (coinduction).
-  bool Pair(FlowId p, StateId s) {
+  bool Pair(FlowId p, StateId s, bool goes_on = false) {
+    if (!goes_on && !WaitsWell(p, s)) return false;
     if (!seen_.emplace(p, s).second) return true;
     added_.emplace_back(p, s);
     todo_.emplace_back(p, s);
@@ -194,7 +195,7 @@ class Typing {
       if (!Case(p, s, action, to)) return false;
     }
     if (!expects) return Mismatch(p, s, "waits for a message");
-    if (move == nullptr) return WaitsWell(node, s);
+    if (move == nullptr) return true;
     if (node.act->motion.motion.text.empty()) {
       return Fail([&] {
         auto& report =
@@ -206,13 +207,17 @@ class Typing {
       });
     }
     if (!Motion(node, s, *move)) return false;
-    return Pair(p, move->second);
+    return Pair(p, move->second, true);
   }
 
-  // The message may come at once, but not for certain: the robot may begin what it does meanwhile.
-  bool WaitsWell(const FlowNode& node, StateId s) {
-    if (node.act->motion.motion.text.empty()) return true;
-    const auto wrong = compare_.Moves(node, {});
+  // Where the choreography has messages and no motion, what a process does while it waits may begin, but
+  // nobody moves then: it may only stand. To go on with the motion before is another matter.
+  bool WaitsWell(FlowId p, StateId s) {
+    const FlowNode& node = flow_[p];
+    if (node.kind != FlowKind::kReceive || node.act->motion.motion.text.empty()) return true;
+    if (Find(At(s), Action::Kind::kReceive) == nullptr || Find(At(s), Action::Kind::kMove) != nullptr)
+      return true;
+    const auto wrong = compare_.Stands(node);
     if (!wrong) return true;
     return Fail([&] { wrong->Report(diagnostics_, graph_[At(s).nodes.begin()->second[0]].span); });
   }
@@ -379,8 +384,10 @@ class Typing {
       std::vector<TermId> guards;
       for (const size_t b : candidates) {
         const StateId to = choice[b].second;
+        if (compare_.restarts()) return false;
         if (candidates.size() == 1 ? Pair(leaf.at, to) : Try(leaf.at, to)) guards.push_back(GuardTerm(s, b));
       }
+      if (compare_.restarts()) return false;
       if (guards.empty()) return NoAlternative(leaf, s);
       if (!Offered(p, leaf, s, arena_.Or(guards))) return false;
     }

@@ -160,8 +160,9 @@ class Projection {
     });
   }
 
-  // A message that may come before a motion or right behind it: a motion may be short, so its receiver could
-  // not tell.
+  // A motion may be short. So a message that may come before it must not be one that may also come right
+  // behind it with another meaning, nor compete with one of another sender, or with what the robot says
+  // itself.
   void CompareWithLater(size_t s) {
     std::set<size_t> seen{s};
     for (size_t t = s; true;) {
@@ -176,6 +177,13 @@ class Projection {
         const auto later = type_.states[t].next.find(action);
         if (later != type_.states[t].next.end() && later->second != to)
           return Unclear(s, origins_[s].at(action), origins_[t].at(action));
+        // Nor who of two senders is early, nor whether to wait on or to speak.
+        if (type_.states[t].chosen.valid()) return Unclear(s, origins_[s].at(action), type_.states[t].chosen);
+        for (const auto& [other, behind] : type_.states[t].next) {
+          if (other.kind == Action::Kind::kSend ||
+              (other.kind == Action::Kind::kReceive && other.peer != action.peer))
+            return Unclear(s, origins_[s].at(action), origins_[t].at(other));
+        }
       }
     }
   }

@@ -263,6 +263,9 @@ class Parser : public ProcessParser {
       branch.body = ParseBlock(parallel ? "the head of a thread" : "the guard of an alternative");
       stmt.branches.push_back(std::move(branch));
     }
+    if (stmt.branches.empty() && !failed())
+      diagnostics_.Report(Kind::kSyntaxUnexpected, stmt.span,
+                          parallel ? "a `parallel` without threads" : "a choice without alternatives");
     Expect("}", parallel ? "the threads" : "the alternatives");
   }
 

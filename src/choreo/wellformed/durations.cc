@@ -42,6 +42,7 @@ struct Window {
   std::optional<Rational> least;
   std::optional<Rational> most;
   Rational soonest;
+  std::optional<Rational> latest;
   friend bool operator==(const Window&, const Window&) = default;
 };
 
@@ -51,6 +52,7 @@ struct Ending {
   std::optional<Times> rigid;
   std::optional<Window> flexible;
   bool never = false;  ///< it goes on for ever
+  bool said = false;   ///< on some way a message comes last
 };
 
 void AddRigid(Ending& ending, const Times& times) {
@@ -67,6 +69,7 @@ void AddFlexible(Ending& ending, const Window& window) {
       known.least && window.least ? std::optional(std::max(*known.least, *window.least)) : std::nullopt;
   if (Below(window.most, known.most)) known.most = window.most;
   known.soonest = std::min(known.soonest, window.soonest);
+  if (Below(known.latest, window.latest)) known.latest = window.latest;
 }
 
 bool IsZero(const Ending& e) { return e.rigid && !e.flexible && e.rigid->most && e.rigid->most->IsZero(); }
@@ -116,6 +119,7 @@ class Threads {
     bool flexible = true;
     for (const Ending& t : threads) {
       if (t.rigid) AddRigid(all, *t.rigid);
+      all.said = all.said || t.said;
       flexible = flexible && t.flexible;
     }
     for (const Ending& t : threads) {
@@ -209,11 +213,13 @@ class Threads {
         const auto [times, waits] = StepOf(n);
         after.ending = {};
         if (waits) {
-          AddFlexible(after.ending, From(after.times, {times.least, times.most, times.least}));
+          AddFlexible(after.ending, From(after.times, {times.least, times.most, times.least, times.most}));
         } else {
           AddRigid(after.ending, after.times + times);
         }
         after.times = after.times + times;
+      } else if (n.kind == NodeKind::kMessage) {
+        after.ending.said = true;
       } else if (n.kind == NodeKind::kFork) {
         const Ending inner = EndOf(id);
         if (!inner.rigid && !inner.flexible) return {};  // reported, or for ever
@@ -222,9 +228,10 @@ class Threads {
         if (inner.rigid) AddRigid(outer, after.times + *inner.rigid);
         if (inner.flexible) {
           AddFlexible(outer, From(after.times, *inner.flexible));
-          const Times waiting{inner.flexible->soonest, inner.flexible->most};
+          const Times waiting{inner.flexible->soonest, inner.flexible->latest};
           span = inner.rigid ? Hull(span, waiting) : waiting;
         }
+        outer.said = inner.said;
         after.ending = outer;
         after.times = after.times + span;
         next = {graph_[n.join].next};
@@ -242,6 +249,7 @@ class Threads {
     if (begins.most && window.least) ends.least = *begins.most + *window.least;
     if (window.most) ends.most = begins.least + *window.most;
     ends.soonest = begins.least + window.soonest;
+    if (begins.most && window.latest) ends.latest = *begins.most + *window.latest;
     return ends;
   }
 
@@ -259,6 +267,7 @@ class Threads {
     known.times = Hull(known.times, way.times);
     if (way.ending.rigid) AddRigid(known.ending, *way.ending.rigid);
     if (way.ending.flexible) AddFlexible(known.ending, *way.ending.flexible);
+    known.ending.said = known.ending.said || way.ending.said;
     if (Same(before, known)) return;
     // What grows again and again is in a loop, and takes any time.
     if (++known.updates > kMostUpdates) {
@@ -274,7 +283,7 @@ class Threads {
   }
   static bool Same(const Arrival& a, const Arrival& b) {
     return Same(std::optional(a.times), std::optional(b.times)) && Same(a.ending.rigid, b.ending.rigid) &&
-           Same(a.ending.flexible, b.ending.flexible);
+           Same(a.ending.flexible, b.ending.flexible) && a.ending.said == b.ending.said;
   }
 
   bool Compatible(const Node& fork, const std::vector<Ending>& threads) {
@@ -315,7 +324,10 @@ class Threads {
     const auto sender = static_cast<size_t>(own - fork.threads.begin());
     if (!threads[sender].flexible) return true;  // fits the windows of all others
     for (size_t j = 0; j < threads.size(); ++j) {
-      if (j == sender || !threads[j].flexible || fork.threads[j] == Scope{message.to}) continue;
+      // Who waits for this very message may be late, unless a thread has ended with another one by then:
+      // nobody moves behind that.
+      const bool waits = fork.threads[j] == Scope{message.to} && !threads[sender].said;
+      if (j == sender || !threads[j].flexible || waits) continue;
       const std::optional<Rational>& sure = threads[j].flexible->least;
       if (sure && *sure <= threads[sender].flexible->soonest) continue;
       diagnostics_

@@ -131,13 +131,15 @@ class Synchronisation {
 
   void CheckMessage(NodeId id, const Node& n, const News& news) {
     if (news.quiet) CheckReady(id, n, news);
+    if (news.quiet) CheckLeast(n);
     if (!news.spoken || news.informed.contains(n.from)) return;
     diagnostics_
         .Report(Kind::kChoreoUnordered, n.span,
                 fmt::format("`{}` may send this before another message arrives", graph_.NameOf(n.from)))
         .At(graph_[news.first].span, "nothing orders it behind this message")
         .At(graph_[motion_].span, "both follow this motion")
-        .Note(fmt::format("`{}` has heard from nobody since the motion", graph_.NameOf(n.from)))
+        .Note(fmt::format("`{}` has heard from nobody since {}", graph_.NameOf(n.from),
+                          news.joined ? "the threads joined" : "the motion"))
         .Help(fmt::format("let `{}` wait for a message first", graph_.NameOf(n.from)));
   }
 
@@ -163,6 +165,26 @@ class Synchronisation {
           .Help(fmt::format("let {} say when it has finished: it should send the first message", who));
       if (together) report.Help("`option equal_durations` admits motions of one fixed duration");
     }
+  }
+
+  // Where all motions of a step can be interrupted, whoever speaks first ends it: not before all of them may
+  // end.
+  void CheckLeast(const Node& n) {
+    const Node& motion = graph_[motion_];
+    if (!Rigid(motion).empty()) return;
+    const Part* longest = nullptr;
+    expr::Rational own(0);
+    for (const Part& p : motion.parts) {
+      if (longest == nullptr || p.duration.least > longest->duration.least) longest = &p;
+      if (p.robot == n.from || p.robot == n.to) own = std::max(own, p.duration.least);
+    }
+    if (longest == nullptr || longest->duration.least <= own) return;
+    diagnostics_
+        .Report(Kind::kChoreoNotReady, n.span,
+                fmt::format("`{}` may send this before `{}` can be interrupted", graph_.NameOf(n.from),
+                            graph_.NameOf(longest->robot)))
+        .At(longest->span, fmt::format("this motion takes {} s at least", longest->duration.least.ToString()))
+        .Help(fmt::format("let `{}` send the first message, or receive it", graph_.NameOf(longest->robot)));
   }
 
   // Did the robot itself last do what cannot be interrupted? Then it knows when that ended; where motions of
