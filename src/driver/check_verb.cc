@@ -69,7 +69,10 @@ void AddCheckVerb(CLI::App& app, int& status) {
                    "an option for every choreography, as if it were written there: `equal_durations`")
       ->allow_extra_args(false);
   verb->add_flag("--json", options->json, "the diagnostics as JSON on standard output");
-  verb->footer("example: rondo check examples/koord/delivery.koord");
+  verb->footer(
+      "example: rondo check examples/koord/delivery.koord\n"
+      "         rondo check examples/choreo/handover.rondo\n"
+      "         rondo check world.rondo fetch.chor arm.rosl cart.rosl --option equal_durations");
   verb->callback([options, &status] { status = Run(*options); });
 }
 

@@ -108,6 +108,9 @@ ElementTree.parse(picture)
 done = rondo("project", shuttle, "green", "--svg", str(picture))
 check("an automaton", done.returncode == 0 and "receive cart.arrive" in picture.read_text(), done.stdout + done.stderr)
 ElementTree.parse(picture)
+empty = FOLDER / "empty.rondo"
+empty.write_text("world W {}\nchoreography C in W { loop { } }\nrobot R {}\nworld V { a: R }\n")
+check("a chart of nobody", rondo("graph", str(empty), "--svg", str(picture)).returncode == 0)
 check("a picture of several", rondo("project", shuttle, "--svg", str(picture)).returncode == 2)
 check("a picture nowhere", rondo("graph", shuttle, "--svg", str(FOLDER)).returncode == 1)
 nodes = json.loads(rondo("graph", "--json", shuttle).stdout)["graphs"][0]["nodes"]

@@ -44,7 +44,7 @@ class Chart {
       todo.pop_back();
       if (const NodeId stop = Draw(next, {}, 0); stop.valid()) todo.push_back(stop);
     }
-    const double bottom = *std::ranges::max_element(at_) + kMargin;
+    const double bottom = (at_.empty() ? 0 : *std::ranges::max_element(at_)) + kMargin;
     for (size_t r = 0; r < graph_.robots.size(); ++r) {
       const double x = Centre(r);
       svg_.Rect(x - lane_ / 2 + 8, kMargin, lane_ - 16, kRow - 8, {"#eeeeee", kInk, false, 3});
@@ -57,10 +57,10 @@ class Chart {
  private:
   double Centre(size_t robot) const { return kMargin + lane_ * (static_cast<double>(robot) + 0.5); }
   double Left(const Scope& scope, int depth) const {
-    return Centre(scope.begin()->index()) - lane_ / 2 + kInset * (depth + 1);
+    return Centre(scope.empty() ? 0 : scope.begin()->index()) - lane_ / 2 + kInset * (depth + 1);
   }
   double Right(const Scope& scope, int depth) const {
-    return Centre(scope.rbegin()->index()) + lane_ / 2 - kInset * (depth + 1);
+    return Centre(scope.empty() ? 0 : scope.rbegin()->index()) + lane_ / 2 - kInset * (depth + 1);
   }
 
   // The next row of all lanes of a scope; draws their lifelines down to its end.
