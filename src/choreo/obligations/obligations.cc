@@ -41,6 +41,11 @@ class Builder {
     }
     std::ranges::for_each(graph_.world->environment, range);
     ranges_ = arena_.And(ranges);
+    for (const robot::Body& body : graph_.world->bodies) {
+      if (!body.body || !body.hull) continue;
+      Unsat(ObligationKind::kHull, body.type->name.span, fmt::format("the hull of `{}`", body.name.text),
+            {In(*body.body), arena_.Not(In(*body.hull))});
+    }
     Initial();
     for (const Instance& i : graph_.instances) Contract(i);
     Thread(graph_.start, NodeId(), {});
@@ -350,6 +355,8 @@ Obligations ObligationsOf(const Graph& graph, Arena& arena) { return Builder(gra
 
 std::string_view KindName(ObligationKind kind) {
   switch (kind) {
+    case ObligationKind::kHull:
+      return "hull";
     case ObligationKind::kInitial:
       return "initial";
     case ObligationKind::kPrecondition:

@@ -11,6 +11,7 @@
 namespace rondo::choreo {
 
 enum class ObligationKind : uint8_t {
+  kHull,          ///< contains the body
   kInitial,       ///< bodies are apart, and stand nowhere in obstacles, when it begins
   kPrecondition,  ///< of a motion
   kAssumption,    ///< of a motion, from what the others of the step promise, all the time

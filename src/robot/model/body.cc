@@ -38,7 +38,6 @@ class Filler {
     for (const RobotItem& item : type_.items) {
       if (const auto* dynamics = std::get_if<DynamicsDef>(&item)) Dynamics(*dynamics);
     }
-    for (const Variable& v : body_.states) body_.coupling.insert(v.term);
     for (const Variable& v : body_.states) body_.sensed.insert(v.term);
     for (const Variable& v : body_.inputs) body_.sensed.insert(v.term);
   }

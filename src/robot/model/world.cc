@@ -153,7 +153,6 @@ class Builder {
     if (&world_->bodies[*parent] == &body) return;  // said already
     const Body& carrier = world_->bodies[*parent];
     body.parent = parent;
-    body.coupling = carrier.coupling;
     const auto mount = carrier.mounts.find(c.mount.text);
     if (mount != carrier.mounts.end()) {
       body.self = mount->second;

@@ -35,9 +35,6 @@ struct Body {
 
   /// What it can know by itself: its states, its inputs, and what its inputs are determined by.
   std::set<TermId> sensed;
-
-  /// Every number that its shapes depend on, its own or of those that carry it.
-  std::set<TermId> coupling;
 };
 
 /// The name of a variable that these terms depend on and that the robot can know neither by itself nor from
