@@ -121,9 +121,9 @@ void ExpectAgreement(const Checked& checked, const std::string& text) {
   ASSERT_EQ(Join(DifferentTrace(Whole(checked.graphs[0]), team, 60)), "") << text;
 }
 
-// RONDO_SEEDS: how many, for a longer search.
+// RONDO_CASES: how many, for a longer search.
 uint64_t Seeds() {
-  const char* text = std::getenv("RONDO_SEEDS");
+  const char* text = std::getenv("RONDO_CASES");
   return text == nullptr ? 20'000 : std::strtoull(text, nullptr, 10);
 }
 

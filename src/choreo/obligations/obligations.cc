@@ -287,9 +287,12 @@ class Builder {
 
   void Fork(const Node& n, const Context& context) {
     Circles(n);
-    for (const auto& [guarantee, span] : context.guarantees) {
-      if (std::ranges::none_of(n.threads, [&](const Scope& s) { return About(guarantee, s); }))
-        Lacks(span, "a thread that can guarantee this alone: it is about robots of several threads");
+    for (const auto& guarantee : context.guarantees) {
+      bool one = false;
+      for (const Scope& thread : n.threads) one = one || About(guarantee.first, thread);
+      if (!one)
+        Lacks(guarantee.second,
+              "a thread that can guarantee this alone: it is about robots of several threads");
     }
     for (size_t b = 0; b < n.next.size(); ++b) {
       const ThreadFacts& own = n.facts[b];
