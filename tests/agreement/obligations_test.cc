@@ -123,6 +123,20 @@ TEST(Obligations, FaultsAreSeen) {
             1);
 }
 
+// What a sensor said once is no fact any more when time has passed.
+TEST(Obligations, InputsChange) {
+  const std::string text = R"(
+robot R { input gap: length in [0, 2 m]  body sphere(self, 1 cm)  motion Idle() interruptible [0, inf) {}
+          motion Go() noninterruptible [1 s, 1 s] { pre gap > 1 m } }
+world W { r: R }
+choreography C in W { choose at r { when r.gap > 1 m { r: Go() } when r.gap <= 1 m { r: Idle() r: Go() } } }
+)";
+  EXPECT_EQ(Decide(text, kSoon).wrong["precondition"], 1);
+  const std::string later = Replace(text, "{ r: Go() }", "{ r: Idle() r: Go() }");
+  EXPECT_EQ(Decide(later, kSoon).wrong["precondition"], 1);
+  EXPECT_EQ(Decide(later, kSoon).right["precondition"], 0);
+}
+
 // Without bodies and regions nothing can be said, and that is said.
 TEST(Obligations, WhatIsMissingIsNamed) {
   Checked checked(Example("shuttle"));

@@ -14,16 +14,34 @@ namespace {
 
 constexpr size_t kMostWays = 12;
 
-std::set<TermId> Modified(const Graph& graph, const Node& motion) {
-  std::set<TermId> modified;
+// What may change while a step goes on: what its motions modify, and all that no robot determines.
+std::set<TermId> Changing(const Graph& graph, const Node& motion) {
+  std::set<TermId> changing;
+  for (const robot::Body& body : graph.world->bodies) {
+    for (const auto& v : body.inputs) changing.insert(v.term);
+  }
+  for (const auto& v : graph.world->environment) changing.insert(v.term);
   for (const Part& p : motion.parts) {
     const Instance& instance = graph.instances[p.instance];
     const auto& states = graph.BodyOf(p.robot).states;
     for (size_t i = 0; i < states.size(); ++i) {
-      if (instance.contract.modifies[i]) modified.insert(states[i].term);
+      if (instance.contract.modifies[i]) changing.insert(states[i].term);
     }
   }
-  return modified;
+  return changing;
+}
+
+// The facts that do not depend on any of these variables.
+Facts Without(const Arena& arena, const Facts& facts, const std::set<TermId>& variables) {
+  Facts result;
+  for (Conjunction way : facts) {
+    std::erase_if(way, [&](TermId fact) {
+      return std::ranges::any_of(robot::VariablesOf(arena, {fact}),
+                                 [&](TermId v) { return variables.contains(v); });
+    });
+    result.insert(std::move(way));
+  }
+  return result;
 }
 
 class Flow {
@@ -41,12 +59,6 @@ class Flow {
   }
 
  private:
-  bool About(TermId fact, const std::set<TermId>& variables) {
-    const auto [it, fresh] = variables_.try_emplace(fact);
-    if (fresh) it->second = robot::VariablesOf(arena_, {fact});
-    return std::ranges::any_of(it->second, [&](TermId v) { return variables.contains(v); });
-  }
-
   // Adds ways by which a node is reached, from a node with this scope.
   void Reach(NodeId id, const Facts& ways, const Scope& from = {}) {
     const bool join = graph_[id].kind == NodeKind::kJoin;
@@ -98,11 +110,9 @@ class Flow {
     return result;
   }
 
-  Facts After(const Node& motion, const Facts& facts) {
-    const std::set<TermId> modified = Modified(graph_, motion);
+  Facts After(const Node& motion, const Facts& facts) const {
     Facts result;
-    for (Conjunction way : facts) {
-      std::erase_if(way, [&](TermId fact) { return About(fact, modified); });
+    for (Conjunction way : Without(arena_, facts, Changing(graph_, motion))) {
       for (const Part& p : motion.parts)
         way.merge(Conjuncts(arena_, graph_.instances[p.instance].contract.post));
       result.insert(std::move(way));
@@ -111,18 +121,13 @@ class Flow {
   }
 
   // What is about robots of the thread alone: others go their own way meanwhile.
-  Facts Own(const Facts& facts, const Scope& thread) {
+  Facts Own(const Facts& facts, const Scope& thread) const {
     std::set<TermId> foreign;
     for (size_t r = 0; r < graph_.robots.size(); ++r) {
       if (thread.contains(RobotId(r))) continue;
       for (const auto& v : graph_.world->bodies[r].states) foreign.insert(v.term);
     }
-    Facts result;
-    for (Conjunction way : facts) {
-      std::erase_if(way, [&](TermId fact) { return About(fact, foreign); });
-      result.insert(std::move(way));
-    }
-    return result;
+    return Without(arena_, facts, foreign);
   }
 
   // The ways of all threads, combined, once each has arrived.
@@ -150,7 +155,6 @@ class Flow {
   const Graph& graph_;
   Arena& arena_;
   std::vector<Facts> facts_;
-  std::map<TermId, std::set<TermId>> variables_;
   std::map<NodeId, std::map<Scope, Facts>> arrived_;  // at joins, by thread
   std::set<std::pair<NodeId, Scope>> merged_;         // where only what is common is kept
   std::vector<NodeId> todo_;
@@ -172,16 +176,7 @@ TermId ToTerm(Arena& arena, const Facts& facts) {
 }
 
 TermId Kept(const Graph& graph, const Node& motion, const Facts& facts, Arena& arena) {
-  const std::set<TermId> modified = Modified(graph, motion);
-  Facts kept;
-  for (Conjunction way : facts) {
-    std::erase_if(way, [&](TermId fact) {
-      return std::ranges::any_of(robot::VariablesOf(arena, {fact}),
-                                 [&](TermId v) { return modified.contains(v); });
-    });
-    kept.insert(std::move(way));
-  }
-  return ToTerm(arena, kept);
+  return ToTerm(arena, Without(arena, facts, Changing(graph, motion)));
 }
 
 std::vector<Facts> FactsOf(const Graph& graph, Arena& arena) { return Flow(graph, arena).Run(); }

@@ -12,10 +12,11 @@ using Conjunction = std::set<expr::TermId>;
 using Facts = std::set<Conjunction>;
 
 /// For each node of a graph, what holds whenever it is reached, if all motions keep their contracts and all
-/// assumptions hold. Strongest postconditions along the graph: a motion drops what it modifies and adds its
-/// `post`; a choice adds its guard; a thread keeps what is about its own robots, and a join has what all of
-/// its threads have. Loops are followed until nothing new comes; where more than a few ways meet, only what
-/// they have in common is kept. A node that is never reached has no facts at all.
+/// assumptions hold. Strongest postconditions along the graph: a motion drops what it modifies, and what
+/// nobody determines, and adds its `post`; a choice adds its guard; a thread keeps what is about its own
+/// robots, and a join has what all of its threads have. Loops are followed until nothing new comes; where
+/// more than a few ways meet, only what they have in common is kept. A node that is never reached has no
+/// facts at all.
 std::vector<Facts> FactsOf(const Graph& graph, expr::Arena& arena);
 
 /// The conjuncts of a formula.
@@ -24,7 +25,8 @@ Conjunction Conjuncts(const expr::Arena& arena, expr::TermId formula);
 /// The disjunction as a term; false if there is none.
 expr::TermId ToTerm(expr::Arena& arena, const Facts& facts);
 
-/// Those conjuncts that do not depend on what the motions of a step modify.
+/// Those conjuncts that stay true while a step goes on: they depend neither on what its motions modify nor on
+/// inputs and the environment.
 expr::TermId Kept(const Graph& graph, const Node& motion, const Facts& facts, expr::Arena& arena);
 
 }  // namespace rondo::choreo

@@ -202,9 +202,13 @@ class Builder {
       if (p.duration.most && (!step.most || *p.duration.most < *step.most)) step.most = p.duration.most;
     }
     during.push_back(Elapsed(step));
-    // What nothing modifies stays as it was.
-    during.push_back(Kept(graph_, n, facts_[id.index()], arena_));
-    for (const Part& p : n.parts) Alone(id, n, p, during, context);
+    // What nothing changes stays as it was.
+    const TermId kept = Kept(graph_, n, facts_[id.index()], arena_);
+    during.push_back(kept);
+    for (const Part& p : n.parts) {
+      Alone(id, p, during, context);
+      Assumption(n, p, kept, context);
+    }
     for (const auto& [guarantee, span] : context.guarantees) {
       auto formulas = during;
       formulas.push_back(arena_.Not(guarantee));
@@ -215,9 +219,8 @@ class Builder {
     }
   }
 
-  // Pre, assume, body, obstacles and region of one robot in a step.
-  void Alone(NodeId id, const Node& n, const Part& p, const std::vector<TermId>& during,
-             const Context& context) {
+  // Pre, body, obstacles and region of one robot in a step.
+  void Alone(NodeId id, const Part& p, const std::vector<TermId>& during, const Context& context) {
     const Instance& instance = graph_.instances[p.instance];
     const robot::Contract& c = instance.contract;
     const std::string who = fmt::format("`{}: {}`", NameOf(p.robot), instance.text);
@@ -225,7 +228,6 @@ class Builder {
     formulas.push_back(arena_.Not(c.pre));
     if (c.pre != arena_.True())
       Unsat(ObligationKind::kPrecondition, p.span, "precondition of " + who, std::move(formulas));
-    if (c.assume != arena_.True()) Assumption(id, n, p, who, context);
     const auto all_the_time = [&](ObligationKind kind, const std::string& title, TermId bad) {
       auto with = during;
       with.push_back(bad);
@@ -247,17 +249,19 @@ class Builder {
 
   // From the promises of those that assume nothing themselves, so that no promise rests on itself; and, for
   // all that, from the beginning.
-  void Assumption(NodeId id, const Node& n, const Part& p, const std::string& who, const Context& context) {
-    const TermId assume = graph_.instances[p.instance].contract.assume;
+  void Assumption(const Node& n, const Part& p, TermId kept, const Context& context) {
+    const Instance& instance = graph_.instances[p.instance];
+    if (instance.contract.assume == arena_.True()) return;
     std::vector<TermId> formulas = context.assumptions;
     for (const Part& q : n.parts) {
       const robot::Contract& c = graph_.instances[q.instance].contract;
       if (q.robot != p.robot && c.assume == arena_.True()) formulas.push_back(c.during);
     }
-    formulas.push_back(Kept(graph_, n, facts_[id.index()], arena_));
-    formulas.push_back(Elapsed(graph_.instances[p.instance].duration));
-    formulas.push_back(arena_.Not(assume));
-    Unsat(ObligationKind::kAssumption, p.span, "what " + who + " assumes", std::move(formulas));
+    formulas.push_back(kept);
+    formulas.push_back(Elapsed(instance.duration));
+    formulas.push_back(arena_.Not(instance.contract.assume));
+    Unsat(ObligationKind::kAssumption, p.span,
+          fmt::format("what `{}: {}` assumes", NameOf(p.robot), instance.text), std::move(formulas));
   }
 
   void Apart(const Part& p, const Part& q, const std::vector<TermId>& during) {
