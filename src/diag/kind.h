@@ -61,6 +61,18 @@ enum class Kind : uint8_t {
   kChoreoEquation,
   kChoreoPrecedence,
   kChoreoImport,
+  // Choreographies: proving.
+  kChoreoMissing,
+  kChoreoContract,
+  kChoreoPrecondition,
+  kChoreoCollision,
+  kChoreoFootprint,
+  kChoreoRegion,
+  kChoreoAssumption,
+  kChoreoNoAlternative,
+  kChoreoPromise,
+  kChoreoNever,
+  kChoreoUnknown,
   // Processes.
   kProcessStep,
   kProcessPeer,
@@ -71,6 +83,7 @@ enum class Kind : uint8_t {
   kProcessArgument,
   kProcessGuard,
   kProcessOpen,
+  kProcessCondition,
   // Koord: names.
   kKoordUndeclared,
   kKoordDuplicate,

@@ -11,7 +11,7 @@ constexpr size_t kKinds = static_cast<size_t>(Kind::kCount_);
 
 std::array<KindInfo, kKinds> BuildTable() {
   std::array<KindInfo, kKinds> table{};
-  for (const auto family : {SyntaxKinds(), SmtKinds(), RobotKinds(), ChoreoKinds(), ProcessKinds(),
+  for (const auto family : {SyntaxKinds(), SmtKinds(), RobotKinds(), ChoreoKinds(), ChoreoProofKinds(), ProcessKinds(),
                             KoordNameKinds(), KoordTypeKinds(), KoordControlKinds(), KoordProofKinds()}) {
     for (const KindInfo& info : family) table[static_cast<size_t>(info.kind)] = info;
   }

@@ -11,6 +11,7 @@ std::span<const KindInfo> SyntaxKinds();
 std::span<const KindInfo> SmtKinds();
 std::span<const KindInfo> RobotKinds();
 std::span<const KindInfo> ChoreoKinds();
+std::span<const KindInfo> ChoreoProofKinds();
 std::span<const KindInfo> ProcessKinds();
 std::span<const KindInfo> KoordNameKinds();
 std::span<const KindInfo> KoordTypeKinds();

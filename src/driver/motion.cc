@@ -99,25 +99,31 @@ std::unique_ptr<Motion> LoadMotion(const std::vector<std::string>& files,
   return motion;
 }
 
-bool CheckMotion(const std::vector<std::string>& files, const std::vector<std::string>& options,
-                 Session& session) {
-  const auto motion = LoadMotion(files, options, session);
-  if (motion == nullptr) return false;
-  if (motion->declarations == nullptr) return true;  // nothing beyond syntax errors
+std::optional<std::vector<choreo::SideCondition>> CheckStructure(Motion& motion, Session& session) {
+  if (motion.declarations == nullptr) return std::nullopt;  // nothing beyond syntax errors
   const size_t before = session.diagnostics.errors();
   std::vector<choreo::Typed> typed;
-  for (choreo::Graph& graph : motion->graphs) {
+  for (choreo::Graph& graph : motion.graphs) {
     const size_t errors = session.diagnostics.errors();
     choreo::CheckWellFormed(graph, session.diagnostics);
     // What is not well-formed has projections that only repeat why.
     if (session.diagnostics.errors() > errors) continue;
     std::vector<choreo::LocalType> types;
     for (size_t r = 0; r < graph.robots.size(); ++r)
-      types.push_back(choreo::Project(graph, motion->module.exprs, choreo::RobotId(r), session.diagnostics));
+      types.push_back(choreo::Project(graph, motion.module.exprs, choreo::RobotId(r), session.diagnostics));
     if (session.diagnostics.errors() == errors) typed.push_back({&graph, std::move(types)});
   }
-  if (session.diagnostics.errors() > before) return true;
-  for (const choreo::SideCondition& c : choreo::CheckProcesses(motion->module, typed, *motion->declarations))
+  if (session.diagnostics.errors() > before) return std::nullopt;
+  return choreo::CheckProcesses(motion.module, typed, *motion.declarations);
+}
+
+bool CheckMotion(const std::vector<std::string>& files, const std::vector<std::string>& options,
+                 Session& session) {
+  const auto motion = LoadMotion(files, options, session);
+  if (motion == nullptr) return false;
+  const auto conditions = CheckStructure(*motion, session);
+  if (!conditions) return true;
+  for (const choreo::SideCondition& c : *conditions)
     session.diagnostics.Report(diag::Kind::kProcessOpen, c.span, fmt::format("it is left open {}", c.what));
   return true;
 }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "choreo/graph/declarations.h"
 #include "choreo/graph/graph.h"
+#include "choreo/process/typing.h"
 #include "driver/load.h"
 
 namespace rondo::driver {
@@ -24,6 +26,10 @@ bool IsMotionFile(const std::string& file);
 /// `options`: such as `equal_durations`, for every choreography.
 std::unique_ptr<Motion> LoadMotion(const std::vector<std::string>& files,
                                    const std::vector<std::string>& options, Session& session);
+
+/// Well-formedness, projections and processes of everything that was loaded. What the typing of processes
+/// leaves open; nothing if something is wrong.
+std::optional<std::vector<choreo::SideCondition>> CheckStructure(Motion& motion, Session& session);
 
 /// Everything that can be said of files without a solver: names, units, well-formedness, projections,
 /// processes. False if one cannot be read.

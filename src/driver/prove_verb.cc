@@ -6,6 +6,8 @@
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
 #include "driver/load.h"
+#include "driver/motion.h"
+#include "driver/motion_prove.h"
 #include "driver/prove_report.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
@@ -18,13 +20,18 @@ namespace rondo::driver {
 namespace {
 
 struct Options {
-  std::string file;
+  std::vector<std::string> files;
+  std::string file;  ///< the only one: a Koord program
   std::string spec;
   int64_t robots = 0;
   unsigned jobs = 0;
   double timeout = 10;
   std::string smt_out;
   std::string cross_check;
+  std::vector<std::string> admitted;
+  std::string certificates;
+  std::string svg;
+  bool no_certify = false;
   bool no_cache = false;
   bool json = false;
 };
@@ -101,29 +108,76 @@ int Run(const Options& options) {
   return status;
 }
 
+MotionProveOptions ToMotionOptions(const Options& options) {
+  MotionProveOptions motion;
+  motion.files = options.files;
+  motion.admitted = options.admitted;
+  motion.jobs = options.jobs;
+  motion.timeout = options.timeout;
+  motion.smt_out = options.smt_out;
+  motion.certificates = options.certificates;
+  motion.svg = options.svg;
+  motion.certify = !options.no_certify;
+  motion.cache = !options.no_cache;
+  motion.json = options.json;
+  return motion;
+}
+
+// Options that belong to the other language are a mistake, not to be ignored.
+void Refuse(const CLI::App& verb, std::initializer_list<const char*> names, const char* what) {
+  for (const char* name : names) {
+    if (verb.get_option(name)->count() > 0)
+      throw CLI::ValidationError(name, fmt::format("is not for {}", what));
+  }
+}
+
+int Dispatch(Options& options, const CLI::App& verb) {
+  if (IsMotionFile(options.files[0])) {
+    Refuse(verb, {"--spec", "--robots", "--cross-check"}, "choreographies");
+    return ProveMotion(ToMotionOptions(options));
+  }
+  Refuse(verb, {"--option", "--certificates", "--svg", "--no-certify"}, "Koord programs");
+  if (options.files.size() > 1) throw CLI::ValidationError("FILE", "one Koord program at a time");
+  options.file = options.files[0];
+  return Run(options);
+}
+
 }  // namespace
 
 void AddProveVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
   CLI::App* verb =
-      app.add_subcommand("prove", "prove the invariants of a Koord program for any number of robots");
-  verb->add_option("FILE", options->file, "the program; `NAME.spec` beside it belongs to it")->required();
+      app.add_subcommand("prove", "prove Koord programs for any number of robots, and choreographies of motions");
+  verb->add_option("FILE", options->files,
+                   "a Koord program (`NAME.spec` beside it belongs to it), or a choreography (`.rondo`), perhaps "
+                   "with original choreographies (`.chor`) and programs (`ROBOT.rosl`) behind it")
+      ->required();
   verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
   verb->add_option("--robots", options->robots, "fix the number of robots; default: every N >= 1")
       ->check(CLI::Range(int64_t{1}, int64_t{1'000'000}));
   verb->add_option("--jobs", options->jobs, "threads; default: one for each core");
-  verb->add_option("--timeout", options->timeout, "seconds for each question to the solver; default: 10")
+  verb->add_option("--timeout", options->timeout, "seconds for each question or obligation; default: 10")
       ->check(CLI::Range(0.001, 1e6));
   verb->add_option("--smt-out", options->smt_out, "write every obligation as SMT-LIB 2 into this folder");
   verb->add_option("--cross-check", options->cross_check,
                    "decide every obligation again with this solver, such as cvc5");
+  verb->add_option("--option", options->admitted,
+                   "an option for every choreography, as if it were written there: `equal_durations`")
+      ->allow_extra_args(false);
+  verb->add_option("--certificates", options->certificates,
+                   "write every certificate of a choreography into this folder, for `rondo certify`");
+  verb->add_option("--svg", options->svg,
+                   "draw the scene of the first collision or region that fails: from above and from the side");
+  verb->add_flag("--no-certify", options->no_certify, "do not write and check certificates of choreographies");
   verb->add_flag("--no-cache", options->no_cache, "neither use nor fill the proof cache");
   verb->add_flag("--json", options->json, "the verdicts as JSON on standard output");
   verb->footer(
       "examples:\n  rondo prove examples/koord/lineform.koord\n"
-      "  rondo prove --robots 15 --cross-check cvc5 examples/koord/delivery.koord\n\n"
+      "  rondo prove --robots 15 --cross-check cvc5 examples/koord/delivery.koord\n"
+      "  rondo prove examples/choreo/handover.rondo\n"
+      "  rondo prove --svg scene.svg --smt-out obligations examples/choreo/underpass.rondo\n\n"
       "exit status: 0 everything proved, 1 something refuted or not inductive, 3 something undecided");
-  verb->callback([options, &status] { status = Run(*options); });
+  verb->callback([options, verb, &status] { status = Dispatch(*options, *verb); });
 }
 
 }  // namespace rondo::driver

@@ -44,6 +44,15 @@ Facts Without(const Arena& arena, const Facts& facts, const std::set<TermId>& va
   return result;
 }
 
+std::set<TermId> StatesOfOthers(const Graph& graph, const Scope& scope) {
+  std::set<TermId> foreign;
+  for (size_t r = 0; r < graph.robots.size(); ++r) {
+    if (scope.contains(RobotId(r))) continue;
+    for (const auto& v : graph.world->bodies[r].states) foreign.insert(v.term);
+  }
+  return foreign;
+}
+
 class Flow {
  public:
   Flow(const Graph& graph, Arena& arena) : graph_(graph), arena_(arena), facts_(graph.nodes.size()) {}
@@ -92,6 +101,7 @@ class Flow {
         for (size_t b = 0; b < n.next.size(); ++b) Reach(n.next[b], Own(facts, n.threads[b]), n.threads[b]);
         return;
       case NodeKind::kMessage:
+        return Reach(n.next[0], Told(n, facts), n.scope);
       case NodeKind::kMerge:
         return Reach(n.next[0], facts, n.scope);
       case NodeKind::kJoin:
@@ -120,14 +130,19 @@ class Flow {
     return result;
   }
 
+  // What a message carries replaces what an earlier one of this node did; it is as promised.
+  Facts Told(const Node& message, const Facts& facts) const {
+    std::set<TermId> carried;
+    for (size_t i = 0; i < message.payload.size(); ++i) {
+      if (i < message.names.size() && !message.names[i].empty())
+        carried.merge(robot::VariablesOf(arena_, message.payload[i].terms));
+    }
+    return With(Without(arena_, facts, carried), message.refinement);
+  }
+
   // What is about robots of the thread alone: others go their own way meanwhile.
   Facts Own(const Facts& facts, const Scope& thread) const {
-    std::set<TermId> foreign;
-    for (size_t r = 0; r < graph_.robots.size(); ++r) {
-      if (thread.contains(RobotId(r))) continue;
-      for (const auto& v : graph_.world->bodies[r].states) foreign.insert(v.term);
-    }
-    return Without(arena_, facts, foreign);
+    return Without(arena_, facts, StatesOfOthers(graph_, thread));
   }
 
   // The ways of all threads, combined, once each has arrived.
@@ -177,6 +192,10 @@ TermId ToTerm(Arena& arena, const Facts& facts) {
 
 TermId Kept(const Graph& graph, const Node& motion, const Facts& facts, Arena& arena) {
   return ToTerm(arena, Without(arena, facts, Changing(graph, motion)));
+}
+
+TermId OwnFacts(const Graph& graph, RobotId robot, const Facts& facts, Arena& arena) {
+  return ToTerm(arena, Without(arena, facts, StatesOfOthers(graph, {robot})));
 }
 
 std::vector<Facts> FactsOf(const Graph& graph, Arena& arena) { return Flow(graph, arena).Run(); }

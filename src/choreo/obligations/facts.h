@@ -29,4 +29,7 @@ expr::TermId ToTerm(expr::Arena& arena, const Facts& facts);
 /// inputs and the environment.
 expr::TermId Kept(const Graph& graph, const Node& motion, const Facts& facts, expr::Arena& arena);
 
+/// Those conjuncts that are about no other robot than this one.
+expr::TermId OwnFacts(const Graph& graph, RobotId robot, const Facts& facts, expr::Arena& arena);
+
 }  // namespace rondo::choreo

@@ -25,48 +25,109 @@ struct Context {
   std::optional<TermId> region;
 };
 
+/// In words: what holds, and what is the matter if it does not.
+struct Claim {
+  std::string title, failure;
+};
+
+Claim Noun(const std::string& title) { return {title, title + " may not hold"}; }
+Claim State(const std::string& state) { return {"a state " + state, "there is no state " + state}; }
+
 class Builder {
  public:
   Builder(const Graph& graph, Arena& arena) : graph_(graph), arena_(arena), facts_(FactsOf(graph, arena)) {}
 
-  Obligations Run() {
-    std::vector<TermId> ranges;
+  Obligations Run(const std::vector<SideCondition>& conditions) {
     const auto range = [&](const robot::Variable& v) {
-      if (v.least) ranges.push_back(arena_.Le(*v.least, v.term));
-      if (v.most) ranges.push_back(arena_.Le(v.term, *v.most));
+      std::vector<TermId>& bounds = ranges_[v.term];
+      if (v.least) bounds.push_back(arena_.Le(*v.least, v.term));
+      if (v.most) bounds.push_back(arena_.Le(v.term, *v.most));
     };
     for (const robot::Body& body : graph_.world->bodies) {
       std::ranges::for_each(body.states, range);
       std::ranges::for_each(body.inputs, range);
     }
     std::ranges::for_each(graph_.world->environment, range);
-    ranges_ = arena_.And(ranges);
     for (const robot::Body& body : graph_.world->bodies) {
       if (!body.body || !body.hull) continue;
-      Unsat(ObligationKind::kHull, body.type->name.span, fmt::format("the hull of `{}`", body.name.text),
-            {In(*body.body), arena_.Not(In(*body.hull))});
+      Apart(ObligationKind::kHull, body.type->name.span, {fmt::format("the hull of `{}`", body.name.text),
+             fmt::format("the hull of `{}` does not contain its body", body.type->name.text)},
+            {arena_.True(), {*body.body}, arena_.True(), *body.hull});
     }
     Initial();
-    for (const Instance& i : graph_.instances) Contract(i);
+    for (size_t i = 0; i < graph_.instances.size(); ++i) {
+      instances_ = {i};
+      Contract(graph_.instances[i]);
+    }
+    instances_.clear();
     Thread(graph_.start, NodeId(), {});
+    for (const SideCondition& c : conditions) Condition(c);
     return std::move(result_);
   }
 
  private:
   // -- stating
 
-  void Unsat(ObligationKind kind, diag::Span span, std::string title, std::vector<TermId> formulas) {
-    formulas.push_back(ranges_);
-    const TermId formula = arena_.And(formulas);
-    if (formula == arena_.False() || !known_.insert(formula).second) return;
-    result_.all.push_back({kind, span, std::move(title), false, formula});
+  // The last formula, with those that share variables with it, directly or over others.
+  void Unsat(ObligationKind kind, diag::Span span, const Claim& claim, const std::vector<TermId>& formulas) {
+    std::vector<TermId> others(formulas.begin(), formulas.end() - 1);
+    const TermId known = Related({formulas.back()}, others);
+    Add({kind, span, claim.title, claim.failure, false, arena_.And(known, formulas.back()), arena_.And(others),
+         {}, {}, {}});
   }
 
-  void Sat(diag::Span span, std::string title, std::vector<TermId> formulas) {
-    formulas.push_back(ranges_);
-    const TermId formula = arena_.And(formulas);
-    if (formula == arena_.True() || !known_.insert(formula).second) return;
-    result_.all.push_back({ObligationKind::kContract, span, std::move(title), true, formula});
+  // No point is in all these shapes.
+  void Apart(ObligationKind kind, diag::Span span, const Claim& claim, robot::Meeting meeting) {
+    std::vector<TermId> others{meeting.configuration};
+    meeting.configuration = arena_.True();
+    meeting.configuration = Related({robot::Formula(arena_, graph_.world->point, meeting)}, others);
+    const TermId formula = robot::Formula(arena_, graph_.world->point, meeting);
+    Add({kind, span, claim.title, claim.failure, false, formula, arena_.And(others), std::move(meeting), {}, {}});
+  }
+
+  void Sat(diag::Span span, const Claim& claim, std::vector<TermId> formulas,
+           ObligationKind kind = ObligationKind::kContract) {
+    std::vector<TermId> others;
+    formulas.push_back(Related(formulas, others));
+    Add({kind, span, claim.title, claim.failure, true, arena_.And(formulas), arena_.True(), {}, {}, {}});
+  }
+
+  void Add(Obligation obligation) {
+    obligation.node = node_;
+    obligation.instances = instances_;
+    const TermId formula = obligation.formula;
+    if (formula == arena_.Constant(obligation.satisfiable) || !known_.insert(formula).second) return;
+    result_.all.push_back(std::move(obligation));
+  }
+
+  // Takes out of `formulas` what is about the variables of `roots`, or about variables that such formulas
+  // mention, and so on; with the ranges of all these variables.
+  TermId Related(const std::vector<TermId>& roots, std::vector<TermId>& formulas) {
+    std::vector<std::pair<TermId, std::set<TermId>>> open;
+    for (const TermId f : formulas) {
+      for (const TermId part : Conjuncts(arena_, f)) open.emplace_back(part, robot::VariablesOf(arena_, {part}));
+    }
+    std::set<TermId> variables = robot::VariablesOf(arena_, roots);
+    std::vector<TermId> related;
+    for (bool grown = true; grown;) {
+      grown = false;
+      std::erase_if(open, [&](const auto& entry) {
+        const auto& [part, own] = entry;
+        if (!own.empty() && std::ranges::none_of(own, [&](TermId v) { return variables.contains(v); }))
+          return false;
+        related.push_back(part);
+        variables.insert(own.begin(), own.end());
+        return grown = true;
+      });
+    }
+    formulas.clear();
+    for (const auto& [part, own] : open) formulas.push_back(part);
+    std::ranges::sort(related);
+    for (const TermId v : variables) {
+      const auto it = ranges_.find(v);
+      if (it != ranges_.end()) related.insert(related.end(), it->second.begin(), it->second.end());
+    }
+    return arena_.And(related);
   }
 
   void Lacks(diag::Span span, std::string what) {
@@ -94,14 +155,16 @@ class Builder {
       for (size_t j = i + 1; j < graph_.robots.size(); ++j) {
         const Shape* b = BodyOf(RobotId(j));
         if (b == nullptr) continue;
-        Unsat(ObligationKind::kInitial, graph_.source->span,
-              fmt::format("`{}` and `{}` are apart initially", NameOf(RobotId(i)), NameOf(RobotId(j))),
-              {graph_.initially, In(*a), In(*b)});
+        const std::string both = fmt::format("`{}` and `{}`", NameOf(RobotId(i)), NameOf(RobotId(j)));
+        Apart(ObligationKind::kInitial, graph_.source->span,
+              {both + " are apart initially", both + " may touch initially"},
+              {graph_.initially, {*a, *b}, arena_.True(), {}});
       }
       for (const robot::Obstacle& o : graph_.world->obstacles) {
-        Unsat(ObligationKind::kInitial, graph_.source->span,
-              fmt::format("`{}` and the obstacle `{}` are apart initially", NameOf(RobotId(i)), o.name.text),
-              {graph_.initially, In(*a), In(o.shape)});
+        const std::string both = fmt::format("`{}` and the obstacle `{}`", NameOf(RobotId(i)), o.name.text);
+        Apart(ObligationKind::kInitial, graph_.source->span,
+              {both + " are apart initially", both + " may touch initially"},
+              {graph_.initially, {*a, o.shape}, arena_.True(), {}});
       }
     }
   }
@@ -111,10 +174,18 @@ class Builder {
     const diag::Span span = i.motion->name.span;
     const std::string who = fmt::format("`{}: {}`", NameOf(i.robot), i.text);
     const robot::Contract& c = i.contract;
-    Sat(span, "a state in which " + who + " may begin",
+    Sat(span, State("in which " + who + " may begin"),
         {c.pre, arena_.And(c.assume, AtClock(c.during, Number(0)))});
-    Sat(span, "a state during " + who, {c.during, c.assume, Elapsed(i.duration)});
-    Sat(span, "a state in which " + who + " ends", {c.post, c.during, Ended(i.duration)});
+    Sat(span, State("during " + who), {c.during, c.assume, Elapsed(i.duration)});
+    if (i.duration.interruptible && c.post != arena_.True()) {
+      Unsat(ObligationKind::kInterrupted, span, {"what " + who + " promises whenever it may be interrupted",
+             "what " + who + " promises may not hold when a message ends it"},
+            {c.during, c.assume, Ended(i.duration), arena_.Not(c.post)});
+    }
+    // At the latest, if that can be; or some time before.
+    const TermId late = i.duration.most ? Seconds(*i.duration.most) : Seconds(i.duration.least);
+    const TermId ends = arena_.And({c.post, c.during, Ended(i.duration)});
+    Sat(span, State("in which " + who + " ends"), {arena_.Or(AtClock(ends, late), ends)});
   }
 
   TermId Number(int64_t n) { return arena_.Number(arena_.Real(), Rational(n)); }
@@ -147,6 +218,8 @@ class Builder {
       todo.pop_back();
       if (id == join || !seen.insert(id).second) continue;
       const Node& n = graph_[id];
+      node_ = id;
+      instances_.clear();
       switch (n.kind) {
         case NodeKind::kMotion:
           Motion(id, n, context);
@@ -180,7 +253,8 @@ class Builder {
     auto formulas = Known(id, context);
     formulas.push_back(arena_.Not(arena_.Or(n.guard_terms)));
     Unsat(ObligationKind::kTotalChoice, n.span,
-          fmt::format("some alternative of `{}` is open", NameOf(n.chooser)), std::move(formulas));
+          {fmt::format("some alternative of `{}` is open", NameOf(n.chooser)),
+           fmt::format("`{}` may have no alternative", NameOf(n.chooser))}, std::move(formulas));
   }
 
   // What is sent is some value as promised, or the value that is stated; the guard holds.
@@ -188,9 +262,10 @@ class Builder {
     auto formulas = Known(id, context);
     formulas.push_back(arena_.Not(n.when));
     if (n.when != arena_.True())
-      Unsat(ObligationKind::kMessage, n.span, fmt::format("the guard of `{}`", n.label), std::move(formulas));
+      Unsat(ObligationKind::kMessage, n.span, Noun(fmt::format("the guard of `{}`", n.label)), std::move(formulas));
     if (n.refinement != arena_.True())
-      Sat(n.span, fmt::format("something that `{}` may carry", n.label), {n.refinement});
+      Sat(n.span, {fmt::format("something that `{}` may carry", n.label),
+                   fmt::format("there is nothing that `{}` may carry", n.label)}, {n.refinement});
   }
 
   void Motion(NodeId id, const Node& n, const Context& context) {
@@ -206,17 +281,36 @@ class Builder {
     const TermId kept = Kept(graph_, n, facts_[id.index()], arena_);
     during.push_back(kept);
     for (const Part& p : n.parts) {
+      instances_ = {p.instance};
       Alone(id, p, during, context);
       Assumption(n, p, kept, context);
     }
+    instances_.clear();
+    for (const Part& p : n.parts) instances_.push_back(p.instance);
+    auto begins = Known(id, context);
+    for (const Part& p : n.parts) begins.push_back(graph_.instances[p.instance].contract.pre);
+    Sat(n.span, {fmt::format("{} begins", TextOf(n)), fmt::format("{} never begins", TextOf(n))}, std::move(begins), ObligationKind::kReached);
     for (const auto& [guarantee, span] : context.guarantees) {
       auto formulas = during;
       formulas.push_back(arena_.Not(guarantee));
-      Unsat(ObligationKind::kGuarantee, n.span, "what the thread guarantees", std::move(formulas));
+      Unsat(ObligationKind::kGuarantee, n.span, Noun("what the thread guarantees"), std::move(formulas));
     }
     for (size_t i = 0; i < n.parts.size(); ++i) {
-      for (size_t j = i + 1; j < n.parts.size(); ++j) Apart(n.parts[i], n.parts[j], during);
+      for (size_t j = i + 1; j < n.parts.size(); ++j) {
+        instances_ = {n.parts[i].instance, n.parts[j].instance};
+        Collision(n.parts[i], n.parts[j], during);
+      }
     }
+  }
+
+  // "`cart: Idle()`" or "`cart: Idle(), arm: Wait(1 s)`"
+  std::string TextOf(const Node& n) const {
+    std::string text;
+    for (const Part& p : n.parts) {
+      text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", NameOf(p.robot),
+                          graph_.instances[p.instance].text);
+    }
+    return "`" + text + "`";
   }
 
   // Pre, body, obstacles and region of one robot in a step.
@@ -227,24 +321,30 @@ class Builder {
     auto formulas = Known(id, context);
     formulas.push_back(arena_.Not(c.pre));
     if (c.pre != arena_.True())
-      Unsat(ObligationKind::kPrecondition, p.span, "precondition of " + who, std::move(formulas));
-    const auto all_the_time = [&](ObligationKind kind, const std::string& title, TermId bad) {
-      auto with = during;
-      with.push_back(bad);
-      Unsat(kind, p.span, title, std::move(with));
-    };
+      Unsat(ObligationKind::kPrecondition, p.span, Noun("the precondition of " + who), formulas);
+    // Its `during`, as it begins.
+    const TermId begins = AtClock(c.during, Number(0));
+    formulas.back() = arena_.Not(begins);
+    if (begins != arena_.True())
+      Unsat(ObligationKind::kStart, p.span, {fmt::format("{} begins where its `during` does", who),
+             fmt::format("the controller of {} has to bridge its beginning", who)}, formulas);
     const Shape* body = BodyOf(p.robot);
     if (body == nullptr || !c.footprint) return;
-    const TermId footprint = In(*c.footprint);
-    const TermId occupied = In(*body);
-    if (occupied != footprint)
-      all_the_time(ObligationKind::kBody, "footprint of " + who, arena_.And(occupied, arena_.Not(footprint)));
-    for (const robot::Obstacle& o : graph_.world->obstacles)
-      all_the_time(ObligationKind::kObstacle, fmt::format("{} and the obstacle `{}`", who, o.name.text),
-                   arena_.And(footprint, In(o.shape)));
+    const TermId state = arena_.And(during);
+    const auto all_the_time = [&](ObligationKind kind, const Claim& claim, robot::Meeting meeting) {
+      meeting.configuration = state;
+      Apart(kind, p.span, claim, std::move(meeting));
+    };
+    if (robot::Within(arena_, *body, *c.footprint) != arena_.True())
+      all_the_time(ObligationKind::kBody, {"the footprint of " + who, "the footprint of " + who + " does not contain its body"}, {{}, {*body}, arena_.True(), *c.footprint});
+    for (const robot::Obstacle& o : graph_.world->obstacles) {
+      const std::string both = fmt::format("{} and the obstacle `{}`", who, o.name.text);
+      all_the_time(ObligationKind::kObstacle, {both, both + " may touch"},
+                   {{}, {*c.footprint, o.shape}, arena_.True(), {}});
+    }
     if (context.region)
-      all_the_time(ObligationKind::kRegion, "region of " + who,
-                   arena_.And(footprint, arena_.Not(*context.region)));
+      all_the_time(ObligationKind::kRegion, {"the region of " + who, who + " may leave the region of its thread"},
+                   {{}, {*c.footprint}, arena_.Not(*context.region), {}});
   }
 
   // From the promises of those that assume nothing themselves, so that no promise rests on itself; and, for
@@ -261,20 +361,34 @@ class Builder {
     formulas.push_back(Elapsed(instance.duration));
     formulas.push_back(arena_.Not(instance.contract.assume));
     Unsat(ObligationKind::kAssumption, p.span,
-          fmt::format("what `{}: {}` assumes", NameOf(p.robot), instance.text), std::move(formulas));
+          Noun(fmt::format("what `{}: {}` assumes", NameOf(p.robot), instance.text)), std::move(formulas));
   }
 
-  void Apart(const Part& p, const Part& q, const std::vector<TermId>& during) {
+  void Collision(const Part& p, const Part& q, const std::vector<TermId>& during) {
     const robot::Contract& a = graph_.instances[p.instance].contract;
     const robot::Contract& b = graph_.instances[q.instance].contract;
     if (!a.footprint || !b.footprint) return;  // said where it is missing
-    auto formulas = during;
-    formulas.push_back(In(*a.footprint));
-    formulas.push_back(In(*b.footprint));
-    Unsat(ObligationKind::kCollision, p.span,
-          fmt::format("`{}: {}` and `{}: {}`", NameOf(p.robot), graph_.instances[p.instance].text,
-                      NameOf(q.robot), graph_.instances[q.instance].text),
-          std::move(formulas));
+    const std::string both =
+        fmt::format("`{}: {}` and `{}: {}`", NameOf(p.robot), graph_.instances[p.instance].text,
+                    NameOf(q.robot), graph_.instances[q.instance].text);
+    Apart(ObligationKind::kCollision, p.span, {both, both + " may touch"},
+          {arena_.And(during), {*a.footprint, *b.footprint}, arena_.True(), {}});
+  }
+
+  // A process decides and calls by what its robot knows.
+  void Condition(const SideCondition& c) {
+    node_ = c.at.empty() ? NodeId() : c.at[0];
+    instances_.clear();
+    std::vector<TermId> known;
+    for (const NodeId id : c.at) {
+      const Facts& facts = facts_[id.index()];
+      known.push_back(c.moving ? Kept(graph_, graph_[id], facts, arena_)
+                               : OwnFacts(graph_, c.robot, facts, arena_));
+    }
+    const std::vector<TermId> formulas{known.empty() ? arena_.True() : arena_.Or(known), c.hypothesis,
+                                       arena_.Not(c.goal)};
+    const std::string what = c.what.substr(c.what.find(' ') + 1);  // "whether ..."
+    Unsat(ObligationKind::kProcess, c.span, {what, "it does not follow that " + what}, formulas);
   }
 
   // Is it about robots of this scope alone?
@@ -308,13 +422,14 @@ class Builder {
       }
       if (own.assume != arena_.True()) {
         others.push_back(arena_.Not(own.assume));
-        Unsat(ObligationKind::kThread, own.span, fmt::format("what the thread of {} assumes", robots),
+        Unsat(ObligationKind::kThread, own.span, Noun(fmt::format("what the thread of {} assumes", robots)),
               std::move(others));
       }
       if (own.region && context.region) {
         auto formulas = context.assumptions;
         formulas.insert(formulas.end(), {own.assume, *own.region, arena_.Not(*context.region)});
-        Unsat(ObligationKind::kFork, own.span, fmt::format("the region of {} within that around it", robots),
+        Unsat(ObligationKind::kFork, own.span, {fmt::format("the region of {} within that around it", robots),
+               fmt::format("the region of {} reaches beyond that around it", robots)},
               std::move(formulas));
       }
       for (size_t j = b + 1; j < n.next.size(); ++j) {
@@ -322,8 +437,8 @@ class Builder {
         auto formulas = context.assumptions;
         formulas.insert(formulas.end(),
                         {*own.region, *n.facts[j].region, own.guarantee, n.facts[j].guarantee});
-        Unsat(ObligationKind::kFork, own.span,
-              fmt::format("the regions of {} and {} are disjoint", robots, graph_.Names(n.threads[j])),
+        const std::string both = fmt::format("the regions of {} and {}", robots, graph_.Names(n.threads[j]));
+        Unsat(ObligationKind::kFork, own.span, {both + " are disjoint", both + " overlap"},
               std::move(formulas));
       }
       Context inner = context;
@@ -351,14 +466,22 @@ class Builder {
   const Graph& graph_;
   Arena& arena_;
   std::vector<Facts> facts_;
-  TermId ranges_;
+  std::map<TermId, std::vector<TermId>> ranges_;  // by variable
   std::set<TermId> known_;
+  NodeId node_;
+  std::vector<size_t> instances_;
   Obligations result_;
 };
 
 }  // namespace
 
-Obligations ObligationsOf(const Graph& graph, Arena& arena) { return Builder(graph, arena).Run(); }
+Obligations ObligationsOf(const Graph& graph, Arena& arena, const std::vector<SideCondition>& conditions) {
+  return Builder(graph, arena).Run(conditions);
+}
+
+bool IsRequired(ObligationKind kind) {
+  return kind != ObligationKind::kStart && kind != ObligationKind::kReached;
+}
 
 std::string_view KindName(ObligationKind kind) {
   switch (kind) {
@@ -390,6 +513,14 @@ std::string_view KindName(ObligationKind kind) {
       return "message";
     case ObligationKind::kContract:
       return "contract";
+    case ObligationKind::kInterrupted:
+      return "interrupted";
+    case ObligationKind::kStart:
+      return "start";
+    case ObligationKind::kProcess:
+      return "process";
+    case ObligationKind::kReached:
+      return "reached";
   }
   return "";
 }

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "choreo/graph/graph.h"
+#include "choreo/process/typing.h"
+#include "robot/separation/meeting.h"
 
 /// What must hold so that a well-formed choreography can be trusted: formulas for a solver (Section 4 of the
 /// paper: compatibility of motions; [T-Motion], [AGComp], [T-Sess]). Time is continuous: `clock` ranges over
@@ -25,15 +27,28 @@ enum class ObligationKind : uint8_t {
   kTotalChoice,   ///< some guard holds
   kMessage,       ///< the guard of a message, and what it carries
   kContract,      ///< pre, during and post of a motion can hold
+  kInterrupted,   ///< what a motion promises holds whenever a message may end it
+  kStart,         ///< `during` of a motion holds as it begins; if not, its controller has to bridge that
+  kProcess,       ///< what the typing of a process leaves open
+  kReached,       ///< it can happen that a motion begins; if not, nothing is said about it
 };
 
-/// To show: `formula` has no solution; or, if `satisfiable`, that it has one.
+/// Does an obligation of this kind have to hold? The others tell what a proof rests on.
+bool IsRequired(ObligationKind kind);
+
+/// To show: `formula` has no solution together with `rest`; or, if `satisfiable`, that it has one.
 struct Obligation {
   ObligationKind kind = ObligationKind::kContract;
   diag::Span span;
-  std::string title;  ///< "precondition of `cart: Move(1 m)`"
+  std::string title;    ///< what holds: "the precondition of `cart: Move(1 m)`"
+  std::string failure;  ///< what is the matter if not: "the precondition of `cart: Move(1 m)` may not hold"
   bool satisfiable = false;
   expr::TermId formula;
+  /// What else is known, about other variables than `formula`: it matters only if it is contradictory.
+  expr::TermId rest;
+  std::optional<robot::Meeting> meeting;  ///< what `formula` says, if it is about shapes
+  NodeId node;                            ///< the motion, message or choice that it is about, if it is about one
+  std::vector<size_t> instances;          ///< the motions that it is about
 };
 
 /// What cannot even be stated: a body or a region that is missing, assumptions that rest on each other.
@@ -51,7 +66,9 @@ struct Obligations {
 /// contracts are kept, then no two bodies ever meet, no body meets an obstacle, every motion begins where it
 /// may, every choice has an alternative, and every message is as it says. Cost: squares of the number of
 /// robots in a step and of threads in a fork, linear in the graph otherwise.
-Obligations ObligationsOf(const Graph& graph, expr::Arena& arena);
+/// With those that the typing of processes leaves open.
+Obligations ObligationsOf(const Graph& graph, expr::Arena& arena,
+                          const std::vector<SideCondition>& conditions = {});
 
 std::string_view KindName(ObligationKind kind);
 

@@ -129,12 +129,13 @@ bool Compare::Refuted(TermId hypothesis, TermId goal) {
   return hypothesis == arena_.Not(goal);
 }
 
-void Compare::Need(Span span, std::string what, TermId hypothesis, TermId goal, std::vector<NodeId> at) {
+void Compare::Need(Span span, std::string what, TermId hypothesis, TermId goal, std::vector<NodeId> at,
+                   bool moving) {
   if (goal == arena_.True() || hypothesis == goal || hypothesis == arena_.False()) return;
   // A conjunct of what is known.
   if (arena_.op(hypothesis) == expr::Op::kAnd && std::ranges::count(arena_.args(hypothesis), goal) > 0)
     return;
-  conditions_.push_back({span, std::move(what), hypothesis, goal, std::move(at)});
+  conditions_.push_back({span, std::move(what), hypothesis, goal, std::move(at), moving, flow_.robot});
 }
 
 TermId Compare::Equal(const Value& a, const Value& b) {
@@ -363,9 +364,9 @@ std::optional<Wrong> Compare::Refines(const FlowNode& node, const Instance& done
                  ""};
   }
   Need(span, what, arena_.And(known, c.pre), x.pre, {at});
-  Need(span, what, arena_.And(known, c.assume), x.assume, {at});
-  Need(span, what, arena_.And(known, x.during), c.during, {at});
-  Need(span, what, arena_.And(known, x.post), c.post, {at});
+  Need(span, what, arena_.And(known, c.assume), x.assume, {at}, true);
+  Need(span, what, arena_.And(known, x.during), c.during, {at}, true);
+  Need(span, what, arena_.And(known, x.post), c.post, {at}, true);
   if (c.footprint && !x.footprint) {
     return Wrong{
         Kind::kProcessMotion, span,
@@ -376,7 +377,7 @@ std::optional<Wrong> Compare::Refines(const FlowNode& node, const Instance& done
   if (x.footprint && c.footprint) {
     const robot::Vector& p = graph_.world->point;
     Need(span, what, arena_.And({known, x.during, robot::Contains(arena_, *x.footprint, p)}),
-         robot::Contains(arena_, *c.footprint, p), {at});
+         robot::Contains(arena_, *c.footprint, p), {at}, true);
   }
   return std::nullopt;
 }

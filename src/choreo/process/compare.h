@@ -43,7 +43,7 @@ class Compare {
   bool Refuted(expr::TermId hypothesis, expr::TermId goal);
   /// Remembers a condition unless it is plainly true.
   void Need(diag::Span span, std::string what, expr::TermId hypothesis, expr::TermId goal,
-            std::vector<NodeId> at);
+            std::vector<NodeId> at, bool moving = false);
   size_t conditions() const { return conditions_.size(); }
   void Forget(size_t from) { conditions_.resize(from); }
   std::vector<SideCondition> TakeConditions() { return std::move(conditions_); }

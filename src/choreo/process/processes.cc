@@ -38,6 +38,7 @@ class Processes {
       if (!flow) continue;
       const LocalType& type = typed->types[flow->robot.index()];
       auto conditions = TypeProcess(*flow, *typed->graph, type, declarations_);
+      for (SideCondition& c : conditions) c.graph = typed->graph;
       std::ranges::move(conditions, std::back_inserter(all));
     }
     return all;

@@ -16,13 +16,16 @@ struct Typed {
   std::vector<LocalType> types;
 };
 
-/// What the structure leaves open: that `goal` holds wherever `hypothesis` does, for robots that are in one
-/// of the nodes `at`.
+/// What the structure leaves open: that `goal` holds wherever `hypothesis` does, for a robot that is in one of
+/// the nodes `at`.
 struct SideCondition {
   diag::Span span;
   std::string what;  ///< "whether the choreography offers this alternative", ...
   expr::TermId hypothesis, goal;
   std::vector<NodeId> at;
+  bool moving = false;  ///< all the time while the robot moves; else when it gets there
+  RobotId robot{};
+  const Graph* graph = nullptr;
 };
 
 /// Types one process. Reports the first step that the local type does not allow: a message to or from the

@@ -246,13 +246,21 @@ Value Functions::Between(Arguments& a) {
   if (a.values.size() == 4 && !NeedSame(a, 0, 3)) return {};
   const TermId v = a.values[0].terms[0];
   const TermId slack = a.values.size() == 4 ? a.values[3].terms[0] : Number(Rational(0));
-  const TermId low = arena_.Apply(Elementary::kMin, {a.values[1].terms[0], a.values[2].terms[0]});
-  const TermId high = arena_.Apply(Elementary::kMax, {a.values[1].terms[0], a.values[2].terms[0]});
+  TermId low = a.values[1].terms[0], high = a.values[2].terms[0];
+  if (Below(high, low)) {
+    std::swap(low, high);
+  } else if (!Below(low, high)) {
+    const TermId other = low;
+    low = arena_.Apply(Elementary::kMin, {other, high});
+    high = arena_.Apply(Elementary::kMax, {other, high});
+  }
   return Boolean(arena_.And(arena_.Le(arena_.Sub(low, slack), v), arena_.Le(v, arena_.Add(high, slack))));
 }
 
 // Is a < b for certain, or is that not known?
-bool Functions::Below(TermId a, TermId b) { return arena_.Lt(a, b) == arena_.True(); }
+bool Functions::Below(TermId a, TermId b) {
+  return arena_.Lt(a, b) == arena_.True() || IsBelow(arena_, a, b);
+}
 
 Value Functions::Solid(const Arguments& a, Shape shape) {
   const TermId zero = Number(Rational(0));

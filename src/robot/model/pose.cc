@@ -18,24 +18,26 @@ struct Turned {
   int quarters = 0;  // 0 to 3
 };
 
+// How often `unit` is in a term that is a multiple of it: coefficients stand in front.
+std::optional<Rational> Times(const Arena& arena, TermId t, TermId unit) {
+  if (t == unit) return Rational(1);
+  if (arena.op(t) == Op::kMul && arena.args(t).size() == 2) {
+    const TermId a = arena.arg(t, 0), b = arena.arg(t, 1);
+    if (arena.IsNumber(a) && b == unit) return arena.number(a);
+    if (arena.IsNumber(b) && a == unit) return arena.number(b);
+  }
+  return std::nullopt;
+}
+
+TermId QuarterPi(Arena& arena) { return arena.Apply(Elementary::kAtan, {Real(arena, 1)}); }
+
 Turned Split(Arena& arena, TermId angle) {
-  const TermId quarter = arena.Mul(arena.Number(arena.Real(), Rational(2)),
-                                   arena.Apply(Elementary::kAtan, {Real(arena, 1)}));  // pi / 2
-  const TermId unit = arena.Apply(Elementary::kAtan, {Real(arena, 1)});
-  // How often pi / 4 is in a term: the normal form keeps sums flat and coefficients in front.
-  const auto times = [&](TermId t) -> std::optional<Rational> {
-    if (t == unit) return Rational(1);
-    if (arena.op(t) == Op::kMul && arena.args(t).size() == 2) {
-      const TermId a = arena.arg(t, 0), b = arena.arg(t, 1);
-      if (arena.IsNumber(a) && b == unit) return arena.number(a);
-      if (arena.IsNumber(b) && a == unit) return arena.number(b);
-    }
-    return std::nullopt;
-  };
-  std::optional<Rational> found = times(angle);
+  const TermId unit = QuarterPi(arena);
+  const TermId quarter = arena.Mul(Real(arena, 2), unit);  // pi / 2
+  std::optional<Rational> found = Times(arena, angle, unit);
   if (!found && arena.op(angle) == Op::kAdd) {
     for (const TermId t : arena.args(angle)) {
-      if (auto q = times(t)) found = std::move(q);
+      if (auto q = Times(arena, t, unit)) found = std::move(q);
     }
   }
   if (!found) return {angle, 0};
@@ -48,8 +50,28 @@ Turned Split(Arena& arena, TermId angle) {
 
 }  // namespace
 
-TermId Pi(Arena& arena) {
-  return arena.Mul(Real(arena, 4), arena.Apply(Elementary::kAtan, {Real(arena, 1)}));
+TermId Pi(Arena& arena) { return arena.Mul(Real(arena, 4), QuarterPi(arena)); }
+
+bool IsBelow(Arena& arena, TermId a, TermId b) {
+  const TermId unit = QuarterPi(arena);
+  const TermId difference = arena.Sub(b, a);
+  // Bounds of pi / 4.
+  const Rational low(785398163397448309), scale(1'000'000'000'000'000'000), high(785398163397448310);
+  Rational least(0);
+  const auto add = [&](TermId t) {
+    if (arena.IsNumber(t)) {
+      least = least + arena.number(t);
+      return true;
+    }
+    const auto times = Times(arena, t, unit);
+    if (times) least = least + *times * (*times < Rational(0) ? high : low) / scale;
+    return times.has_value();
+  };
+  if (arena.op(difference) != Op::kAdd) return add(difference) && Rational(0) < least;
+  for (const TermId t : arena.args(difference)) {
+    if (!add(t)) return false;
+  }
+  return Rational(0) < least;
 }
 
 TermId Sin(Arena& arena, TermId angle) {

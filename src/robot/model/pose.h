@@ -37,6 +37,8 @@ TermId Square(Arena& arena, TermId a);
 
 /// Half a turn, exactly: 4 atan 1.
 TermId Pi(Arena& arena);
+/// Is a < b for certain? Knows numbers and multiples of pi.
+bool IsBelow(Arena& arena, TermId a, TermId b);
 TermId Sin(Arena& arena, TermId angle);
 TermId Cos(Arena& arena, TermId angle);
 

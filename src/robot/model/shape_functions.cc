@@ -102,12 +102,18 @@ Value Functions::Hexagon(Arguments& a) {
   s.sizes = {zero, a.values[3].terms[0]};
   const TermId half = Number(Rational(1) / Rational(2));
   const TermId height = arena_.Mul(half, arena_.Apply(Elementary::kSqrt, {Number(Rational(3))}));
-  const std::array<Vector, 3> directions{
-      {{arena_.Neg(half), arena_.Neg(height), zero}, {arena_.Neg(half), height, zero}, {one, zero, zero}}};
-  for (const Vector& u : directions) {
-    s.faces.push_back({u, a.values[2].terms[0], one});
+  const Vector u0{arena_.Neg(half), arena_.Neg(height), zero}, u1{arena_.Neg(half), height, zero},
+      u2{one, zero, zero};
+  const auto near = [&](const Vector& u) { s.faces.push_back({u, a.values[2].terms[0], one}); };
+  const auto far = [&](const Vector& u) {
     s.faces.push_back({{arena_.Neg(u[0]), arena_.Neg(u[1]), zero}, a.values[1].terms[0], one});
-  }
+  };
+  near(u2);  // counterclockwise
+  far(u0);
+  near(u1);
+  far(u2);
+  near(u0);
+  far(u1);
   return Solid(a, std::move(s));
 }
 

@@ -34,8 +34,7 @@ class Decision {
   Status Run() { return Decide(lowered_.conjuncts, {}); }
 
   const Solution& solution() const { return solution_; }
-  const FlatBox& box() const { return box_; }
-  const std::vector<TermId>& box_variables() const { return box_variables_; }
+  const std::map<TermId, interval::Interval>& box() const { return box_; }
 
  private:
   using Definitions = std::vector<std::pair<TermId, TermId>>;
@@ -76,10 +75,22 @@ class Decision {
     }
     if (split) return Cases(prepared);
     if (result.kind == SearchResult::Kind::kGaveUp) return Status::kGaveUp;
-    box_ = result.box;
-    box_variables_.clear();
-    for (const TapeVariable& v : tape.variables) box_variables_.push_back(v.term);
+    Report(result.box, tape, prepared);
     return Status::kUndecided;
+  }
+
+  // The box, and what it leaves to the variables that were eliminated.
+  void Report(const FlatBox& box, const Tape& tape, const Prepared& prepared) {
+    box_.clear();
+    const Assignment nothing;
+    PointChecker checker(arena_, nothing);
+    for (size_t v = 0; v < tape.variables.size(); ++v) {
+      const interval::Interval range{box[2 * v], box[2 * v + 1]};
+      box_.emplace(tape.variables[v].term, range);
+      checker.Widen(tape.variables[v].term, range);
+    }
+    for (const auto& [variable, term] : prepared.definitions)
+      box_.emplace(variable, checker.Enclosure(term));
   }
 
   void WriteSearch(const Prepared& prepared, const Tape& tape, const std::vector<TreeNode>& tree) {
@@ -136,8 +147,7 @@ class Decision {
   Proof* proof_;
   SearchOptions search_;
   Solution solution_;
-  FlatBox box_;
-  std::vector<TermId> box_variables_;
+  std::map<TermId, interval::Interval> box_;
 };
 
 Value ToValue(const Query& query, const Variable& variable, const Rational& number) {
@@ -194,9 +204,10 @@ Answer IcpSolver::Check(const Query& query, const Budget& budget, const base::St
     }
     case Decision::Status::kUndecided: {
       DeltaSat delta;
-      for (size_t v = 0; v < decision.box_variables().size(); ++v) {
-        delta.box.emplace(lowered.variables.at(decision.box_variables()[v]).source,
-                          std::pair(decision.box()[2 * v], decision.box()[2 * v + 1]));
+      for (const auto& [variable, range] : decision.box()) {
+        const auto known = lowered.variables.find(variable);
+        if (known == lowered.variables.end() || range.IsEmpty()) continue;
+        delta.box.emplace(known->second.source, std::pair(range.lo, range.hi));
       }
       return delta;
     }

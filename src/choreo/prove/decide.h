@@ -1,0 +1,50 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "choreo/obligations/obligations.h"
+#include "expr/numeric.h"
+#include "solve/icp/icp_solver.h"
+
+/// Decides obligations.
+namespace rondo::choreo {
+
+enum class Verdict : uint8_t { kProved, kRefuted, kUnknown };
+
+/// Which way led to the verdict.
+enum class Way : uint8_t {
+  kSizes,       ///< shapes in one frame: their sizes decide
+  kSeparation,  ///< separating directions, over the state alone
+  kPoints,      ///< intervals over the state and a point
+};
+
+/// A state at which an obligation fails, or, for one that asks for a state, holds.
+struct Witness {
+  expr::Numeric::Point values;  ///< by variable of the obligation; the point of the world among them
+  bool exact = true;            ///< the values are the solution; else a solution is near
+};
+
+struct Decision {
+  Verdict verdict = Verdict::kUnknown;
+  Way way = Way::kPoints;
+  Witness witness;     ///< kRefuted, or how close it came: the state at which nothing could be excluded
+  double apart = 0;    ///< kUnknown, of shapes: at least this far apart there; negative: they overlap
+  std::string reason;  ///< kUnknown
+  size_t questions = 0;
+  /// kProved: a certificate for each question; none if nothing had to be asked.
+  std::vector<std::string> certificates;
+};
+
+struct Limits {
+  std::chrono::milliseconds time{10'000};
+  bool certificates = true;
+  bool separation = true;  ///< off: only the general way over points, to compare
+};
+
+/// Decides one obligation. Thread-safe: works on copies of the terms. `point`, `clock`: the world's.
+Decision Decide(const Obligation& obligation, const robot::World& world, const expr::Arena& arena,
+                const solve::icp::Options& engine, const Limits& limits, const base::StopToken& stop);
+
+}  // namespace rondo::choreo

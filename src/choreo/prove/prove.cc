@@ -1,0 +1,139 @@
+#include "choreo/prove/prove.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <mutex>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "solve/certify/checker.h"
+
+namespace rondo::choreo {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Part of every question in the cache: a new way of deciding asks again.
+constexpr std::string_view kEngine = "choreo 1";
+
+class Proving {
+ public:
+  Proving(const Obligations& obligations, const Graph& graph, const expr::Arena& arena,
+          const ProveOptions& options)
+      : obligations_(obligations), graph_(graph), arena_(arena), options_(options) {}
+
+  Proofs Run() {
+    const size_t total = obligations_.all.size();
+    proofs_.all.resize(total);
+    size_t done = 0;
+    base::ParallelFor(total, options_.jobs, [&](size_t i) {
+      const Obligation& obligation = obligations_.all[i];
+      Proof proof;
+      if (options_.stop.StopRequested()) {
+        proof.decision.reason = "interrupted";
+      } else {
+        const auto start = Clock::now();
+        proof = One(obligation, i);
+        proof.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      }
+      const std::scoped_lock lock(mutex_);
+      proofs_.all[i] = std::move(proof);
+      if (options_.progress) options_.progress(++done, total, obligation.title);
+    });
+    return std::move(proofs_);
+  }
+
+ private:
+  std::string QuestionOf(const Obligation& obligation) const {
+    solve::Query query;
+    query.arena = &arena_;
+    query.assertions = {{obligation.formula, ""}};
+    if (obligation.rest != arena_.True()) query.assertions.push_back({obligation.rest, ""});
+    return solve::ToSmtLib(query, expr::SmtFunctions::kNamed);
+  }
+
+  Proof One(const Obligation& obligation, size_t number) {
+    Proof proof;
+    const bool asks = options_.cache != nullptr || !options_.smt_out.empty();
+    const std::string question = asks ? QuestionOf(obligation) : std::string();
+    if (!options_.smt_out.empty()) {
+      Write(options_.smt_out / fmt::format("{:04}-{}.smt2", number + 1, KindName(obligation.kind)),
+            fmt::format("; {}\n(set-info :status {})\n{}", obligation.title,
+                        obligation.satisfiable ? "sat" : "unsat", question));
+    }
+    const bool certify = options_.limits.certificates;
+    const std::string key = fmt::format("; {}{}{}\n{}", kEngine, obligation.satisfiable ? ", sat" : "",
+                                        certify ? "" : ", not certified", question);
+    if (options_.cache != nullptr && options_.certificates.empty() && options_.cache->Find(key)) {
+      proof.decision.verdict = Verdict::kProved;
+      proof.cached = true;
+      proof.certified = certify;
+      return proof;
+    }
+    proof.decision =
+        Decide(obligation, *graph_.world, arena_, solve::icp::Options{}, options_.limits, options_.stop);
+    if (proof.decision.verdict != Verdict::kProved) return proof;
+    if (certify) Certify(proof, obligation, number);
+    if (options_.cache != nullptr && proof.decision.verdict == Verdict::kProved)
+      options_.cache->Store(key, {std::string(kEngine), {}});
+    return proof;
+  }
+
+  // A proof that the checker does not accept is none.
+  void Certify(Proof& proof, const Obligation& obligation, size_t number) {
+    auto& certificates = proof.decision.certificates;
+    for (size_t i = 0; i < certificates.size(); ++i) {
+      if (!options_.certificates.empty()) {
+        Write(options_.certificates / fmt::format("{:04}-{}-{}.cert", number + 1, KindName(obligation.kind), i + 1),
+              fmt::format("; {}\n{}", obligation.title, certificates[i]));
+      }
+      diag::SourceSet sources;
+      diag::Diagnostics diagnostics;
+      solve::certify::Certificate certificate;
+      solve::certify::ReadCertificate(sources, sources.Add("certificate", certificates[i]), certificate,
+                                      diagnostics);
+      solve::certify::Tally tally;
+      if (!diagnostics.has_errors()) tally = solve::certify::Check(certificate, diagnostics, options_.stop);
+      if (tally.stopped) {
+        proof.decision.verdict = Verdict::kUnknown;
+        proof.decision.reason = "interrupted";
+        return;
+      }
+      if (!diagnostics.has_errors()) continue;
+      proof.decision.verdict = Verdict::kUnknown;
+      proof.decision.reason = "its certificate was rejected";
+      const std::scoped_lock lock(mutex_);
+      proofs_.bug = true;
+      proofs_.problems.push_back(
+          fmt::format("the certificate of \"{}\" was rejected: {}", obligation.title, diagnostics.all()[0].message));
+      return;
+    }
+    proof.certified = true;
+    certificates.clear();  // they are large
+    certificates.shrink_to_fit();
+  }
+
+  void Write(const std::filesystem::path& path, const std::string& text) {
+    const auto written = base::WriteFileAtomically(path, text);
+    if (written.ok()) return;
+    const std::scoped_lock lock(mutex_);
+    proofs_.problems.push_back(fmt::format("{}: {}", path.string(), written.error().message));
+  }
+
+  const Obligations& obligations_;
+  const Graph& graph_;
+  const expr::Arena& arena_;
+  const ProveOptions& options_;
+  std::mutex mutex_;
+  Proofs proofs_;
+};
+
+}  // namespace
+
+Proofs Prove(const Obligations& obligations, const Graph& graph, const expr::Arena& arena,
+             const ProveOptions& options) {
+  return Proving(obligations, graph, arena, options).Run();
+}
+
+}  // namespace rondo::choreo

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "choreo/prove/prove.h"
+#include "diag/diagnostic.h"
+
+namespace rondo::choreo {
+
+/// Reports what is missing, and each obligation that does not hold or was not decided: what may happen, when,
+/// where and in which state, and what would mend it.
+void ReportProofs(const Graph& graph, const Obligations& obligations, const Proofs& proofs,
+                  diag::Diagnostics& diagnostics);
+
+/// What a proof rests on, in sentences: contracts of motions, ranges, what controllers have to bridge.
+std::vector<std::string> AssumptionsOf(const Graph& graph, const Obligations& obligations,
+                                       const Proofs& proofs);
+
+/// "arm.a = 130 deg", for each variable of a witness, in the order of the world.
+std::vector<std::string> StateOf(const Graph& graph, const Witness& witness);
+
+/// Where the point of a witness is: "(1 m, 0.5 m, 0 m)"; empty if it has none.
+std::string PlaceOf(const Graph& graph, const Witness& witness);
+
+}  // namespace rondo::choreo

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <unordered_map>
+
+#include "expr/arena.h"
+
+namespace rondo::expr {
+
+/// Values of real terms in double precision, for search, pictures and tests: nothing here is rigorous.
+/// Variables without a value are 0; where a function has no value, the result is NaN. Each distinct subterm
+/// is computed once.
+class Numeric {
+ public:
+  using Point = std::unordered_map<TermId, double>;
+
+  Numeric(const Arena& arena, const Point& point) : arena_(arena), known_(point) {}
+  double operator()(TermId term);
+  /// How far the formula is from being true: 0 if it is. Of a comparison, by how much it fails; of a
+  /// conjunction the largest, of a disjunction the smallest.
+  double Violation(TermId formula) { return Miss(formula, true); }
+
+ private:
+  double One(TermId term);
+  double Miss(TermId formula, bool positive);
+
+  const Arena& arena_;
+  Point known_;
+};
+
+}  // namespace rondo::expr

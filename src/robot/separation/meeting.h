@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "robot/model/shape.h"
+
+namespace rondo::robot {
+
+/// The question whether bodies can meet: is there a state and a point of the world, so that `configuration`
+/// holds, all `shapes` contain the point, `where` holds there, and `beyond` does not contain it?
+struct Meeting {
+  TermId configuration;       ///< about the state; not about the point
+  std::vector<Shape> shapes;  ///< at least one
+  TermId where;               ///< about the point and the state: outside of a region; true if there is none
+  std::optional<Shape> beyond;
+};
+
+/// The same as one formula over the state and the point.
+TermId Formula(Arena& arena, const Vector& point, const Meeting& meeting);
+
+/// The same with the point in coordinates of the frame of the first shape, where the shape bounds it: one
+/// formula for each convex part of that shape. The meeting is possible if one of them has a solution.
+std::vector<TermId> LocalFormulas(Arena& arena, const Vector& point, const Meeting& meeting);
+
+/// A condition under which the first shape lies within the second, because their parts stand in the same
+/// frame: comparisons of sizes. Sufficient, not necessary; false if nothing can be said.
+TermId Within(Arena& arena, const Shape& inner, const Shape& outer);
+
+}  // namespace rondo::robot
