@@ -72,6 +72,7 @@ enum class Kind : uint8_t {
   kChoreoNoAlternative,
   kChoreoPromise,
   kChoreoNever,
+  kChoreoNoRegion,
   kChoreoUnknown,
   // Processes.
   kProcessStep,

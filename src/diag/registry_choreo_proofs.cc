@@ -85,6 +85,12 @@ constexpr KindInfo kTable[] = {
            "    when a.x > 0 { a -> b: left() { a: Idle(), b: Idle() } }\n"
            "    when a.x <= 0 { a -> b: right() { a: Idle(), b: Idle() } }\n  }\n}\n",
      "prove"},
+    {Kind::kChoreoNoRegion, "choreo-no-region", Severity::kError, "threads that no planes keep apart",
+     "Threads without a `region` get one, if planes can be found between what their motions take up: along x, y, "
+     "z and\nbetween x and y, one after the other, for pieces of time if need be.",
+     BALLS "choreography C in W {\n  initially a.x == 0 and b.x == 0\n  parallel {\n"
+           "    thread { a: Roll(0, 1.8 m) }\n    thread { b: Idle() }\n  }\n}\n",
+     "prove"},
     {Kind::kChoreoUnknown, "choreo-unknown", Severity::kError, "what could neither be proved nor refuted",
      "The search ran out of time, or came to states so near the edge that numbers cannot tell. It is not proved.",
      "robot Ball {\n  state x : length in [-5 m, 5 m]\n  state w : angle in [-1 rad, 1 rad]\n"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "choreo/infer/regions.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
 #include "driver/motion.h"
@@ -35,7 +36,7 @@ class Run {
       session_.diagnostics.Report(diag::Kind::kChoreoMissing, {}, "there is no choreography to prove");
       return Finish(kRejected);
     }
-    for (const choreo::Graph& graph : motion->graphs) {
+    for (choreo::Graph& graph : motion->graphs) {
       std::vector<choreo::SideCondition> own;
       for (const auto& c : *conditions) {
         if (c.graph == &graph) own.push_back(c);
@@ -48,15 +49,27 @@ class Run {
   }
 
  private:
-  void Prove(const choreo::Graph& graph, const std::vector<choreo::SideCondition>& conditions,
+  void Prove(choreo::Graph& graph, const std::vector<choreo::SideCondition>& conditions,
              expr::Arena& arena) {
     MotionReport report;
     report.graph = &graph;
+    {
+      ProgressLine line;
+      const InterruptScope interrupt(stop_);
+      choreo::InferOptions infer;
+      infer.stop = stop_;
+      infer.limits.time = Milliseconds();
+      infer.progress = [&](const std::string& robots) { line.Show("looking for regions of " + robots); };
+      report.regions = choreo::InferRegions(graph, arena, infer);
+    }
     report.obligations = choreo::ObligationsOf(graph, arena, conditions);
+    // Said below, with the reason.
+    if (!report.regions.failed.empty())
+      std::erase_if(report.obligations.missing, [](const choreo::Missing& m) { return m.region; });
     const solve::cache::ProofCache cache(options_.cache ? solve::cache::ProofCache::DefaultFolder()
                                                         : std::filesystem::path());
     choreo::ProveOptions prove;
-    prove.limits.time = std::chrono::milliseconds(static_cast<int64_t>(options_.timeout * 1000));
+    prove.limits.time = Milliseconds();
     prove.limits.certificates = options_.certify;
     prove.jobs = options_.jobs;
     prove.cache = options_.cache ? &cache : nullptr;
@@ -73,7 +86,16 @@ class Run {
     }
     report.interrupted = stop_.cancelled();
     choreo::ReportProofs(graph, report.obligations, report.proofs, session_.diagnostics);
+    for (const choreo::NoRegion& n : report.regions.failed) {
+      session_.diagnostics.Report(diag::Kind::kChoreoNoRegion, n.span, "no region was found for this thread")
+          .Note(n.why)
+          .Help("write `thread region ... { ... }`, or let the motions keep farther apart");
+    }
     reports_.push_back(std::move(report));
+  }
+
+  std::chrono::milliseconds Milliseconds() const {
+    return std::chrono::milliseconds(static_cast<int64_t>(options_.timeout * 1000));
   }
 
   int Finish(int status) {
@@ -92,7 +114,7 @@ class Run {
       PrintDiagnostics(session_.sources, session_.diagnostics);
     }
     if (!reports_.empty()) Print("\n");
-    for (const MotionReport& r : reports_) Print(MotionSummary(r));
+    for (const MotionReport& r : reports_) Print(MotionSummary(r, session_.sources));
     if (status != kEstablished) Print(fmt::format("exit {}\n", status));
     return status;
   }

@@ -101,6 +101,10 @@ void ForRequired(const MotionReport& report, Visit visit) {
   }
 }
 
+bool IsIncomplete(const MotionReport& report) {
+  return !report.obligations.missing.empty() || !report.regions.failed.empty();
+}
+
 Counts Total(const MotionReport& report) {
   Counts total;
   ForRequired(report, [&](const auto&, const Proof& p) { total.Add(p); });
@@ -112,7 +116,7 @@ Counts Total(const MotionReport& report) {
 int StatusOf(const MotionReport& report) {
   const Counts total = Total(report);
   if (report.proofs.bug) return kBug;
-  if (total.fails > 0 || !report.obligations.missing.empty()) return kRejected;
+  if (total.fails > 0 || IsIncomplete(report)) return kRejected;
   if (total.open > 0) return kUndecided;
   return report.proofs.problems.empty() ? kEstablished : kRejected;
 }
@@ -138,18 +142,26 @@ std::string MotionTable(const MotionReport& report) {
   return text;
 }
 
-std::string MotionSummary(const MotionReport& report) {
+std::string RegionLines(const choreo::Inference& regions, const diag::SourceSet& sources) {
+  std::string text;
+  for (const choreo::FoundRegion& r : regions.found) {
+    text += fmt::format("{}:{}: thread region {}  # {}\n", sources.path(r.span.file),
+                        sources.Locate(r.span.file, r.span.begin).line, r.text, r.robots);
+  }
+  return text;
+}
+
+std::string MotionSummary(const MotionReport& report, const diag::SourceSet& sources) {
   const Counts total = Total(report);
   const auto& proofs = report.proofs.all;
-  const bool certified = std::ranges::all_of(proofs, [](const Proof& p) {
-    return p.decision.verdict != Verdict::kProved || p.certified;
-  });
+  size_t uncertified = 0;
+  for (const Proof& p : proofs) uncertified += p.decision.verdict == Verdict::kProved && !p.certified ? 1 : 0;
   const std::string& name = report.graph->source->name.text;
   std::string text;
-  if (!report.obligations.missing.empty()) {
+  if (IsIncomplete(report)) {
     text = fmt::format("not proved: {}: something is missing\n", name);
   } else if (total.fails > 0) {
-    text = fmt::format("refuted: {}: {} of {} obligations fail{}\n", name, total.fails,
+    text = fmt::format("not proved: {}: {} of {} obligations fail{}\n", name, total.fails,
                        total.fails + total.holds + total.open,
                        total.open > 0 ? fmt::format(", {} are not decided", total.open) : "");
   } else if (total.open > 0) {
@@ -157,8 +169,10 @@ std::string MotionSummary(const MotionReport& report) {
                        total.holds + total.open);
   } else {
     text = fmt::format("{}: {}: no robots or obstacles ever touch, and every step is as promised\n",
-                       certified ? "proved and certified" : "proved", name);
+                       uncertified == 0 ? "proved and certified" : "proved", name);
+    if (uncertified > 0) text += fmt::format("not certified: {} of {} proofs\n", uncertified, proofs.size());
   }
+  if (!report.regions.found.empty()) text += "regions that were found:\n" + RegionLines(report.regions, sources);
   for (const std::string& a : choreo::AssumptionsOf(*report.graph, report.obligations, report.proofs))
     text += fmt::format("assumed: {}\n", a);
   if (report.interrupted) text += "interrupted: what is marked `?` was not decided\n";
@@ -191,10 +205,14 @@ nlohmann::json ToJson(const MotionReport& report) {
   }
   nlohmann::json missing = nlohmann::json::array();
   for (const choreo::Missing& m : report.obligations.missing) missing.push_back(m.what);
+  nlohmann::json regions = nlohmann::json::array();
+  for (const choreo::FoundRegion& r : report.regions.found)
+    regions.push_back({{"robots", r.robots}, {"region", r.text}});
   return {{"choreography", report.graph->source->name.text},
           {"status", StatusOf(report)},
           {"obligations", list},
           {"missing", missing},
+          {"regions", regions},
           {"assumed", choreo::AssumptionsOf(*report.graph, report.obligations, report.proofs)}};
 }
 

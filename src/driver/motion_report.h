@@ -2,13 +2,16 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "choreo/infer/regions.h"
 #include "choreo/prove/report.h"
+#include "diag/source.h"
 
 namespace rondo::driver {
 
 /// A choreography and what was found about it.
 struct MotionReport {
   const choreo::Graph* graph = nullptr;
+  choreo::Inference regions;
   choreo::Obligations obligations;
   choreo::Proofs proofs;
   bool interrupted = false;
@@ -21,7 +24,10 @@ int StatusOf(const MotionReport& report);
 std::string MotionTable(const MotionReport& report);
 
 /// The verdict and what it rests on.
-std::string MotionSummary(const MotionReport& report);
+std::string MotionSummary(const MotionReport& report, const diag::SourceSet& sources);
+
+/// `FILE:LINE: thread region REGION  # of `cart`` for each region that was found.
+std::string RegionLines(const choreo::Inference& regions, const diag::SourceSet& sources);
 
 nlohmann::json ToJson(const MotionReport& report);
 

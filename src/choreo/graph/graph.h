@@ -49,6 +49,7 @@ struct ThreadFacts {
   diag::Span span;
   std::optional<expr::TermId> region;  ///< over the point of the world
   expr::TermId assume, guarantee;
+  std::string region_text{};  ///< as source
 };
 
 enum class NodeKind : uint8_t { kMessage, kMotion, kChoice, kMerge, kFork, kJoin, kEnd };
@@ -86,6 +87,7 @@ struct Graph {
   bool equal_durations = false;  ///< `option equal_durations`
 
   const Node& operator[](NodeId id) const { return nodes[id.index()]; }
+  Node& operator[](NodeId id) { return nodes[id.index()]; }
   const std::string& NameOf(RobotId id) const { return robots[id.index()].text; }
   const robot::Body& BodyOf(RobotId id) const { return world->bodies[id.index()]; }
   std::optional<RobotId> Find(std::string_view robot) const;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "lang/expr_printer.h"
+#include "expr/defined.h"
 #include "expr/substitute.h"
 
 namespace rondo::choreo {
@@ -195,7 +197,9 @@ void NodeBuilder::AddGuard(ExprId guard, Node& choice) {
   expr::Arena& arena = evaluator_.arena();
   choice.guards.push_back(guard);
   if (!guard.valid()) {
-    choice.guard_terms.push_back(arena.Not(arena.Or(choice.guard_terms)));
+    std::vector<TermId> others;
+    for (const TermId g : choice.guard_terms) others.push_back(expr::Complement(arena, g));
+    choice.guard_terms.push_back(arena.And(others));
     return;
   }
   choice.guard_terms.push_back(evaluator_.Formula(guard, graph_.world->scope, "a formula"));
@@ -267,11 +271,13 @@ std::vector<Scope> NodeBuilder::Threads(const Stmt& s, const std::vector<ThreadR
 ThreadFacts NodeBuilder::Facts(const Branch& branch) {
   expr::Arena& arena = evaluator_.arena();
   std::vector<TermId> region, assume, guarantee;
+  std::string text;
   const auto add = [&](const std::vector<Clause>& clauses) {
     for (const Clause& c : clauses) {
       const bool space = c.keyword.text == "region";
       const robot::Scope& names = space ? graph_.world->point_scope : graph_.world->scope;
       const TermId formula = evaluator_.Formula(c.value, names, "a formula");
+      if (space) text += fmt::format("{}({})", text.empty() ? "" : " and ", lang::PrintExpr(evaluator_.pool(), c.value));
       (space ? region : c.keyword.text == "assume" ? assume : guarantee).push_back(formula);
     }
   };
@@ -279,7 +285,7 @@ ThreadFacts NodeBuilder::Facts(const Branch& branch) {
     if (const ContractDef* contract = declarations_.FindContract(branch.contract)) add(contract->facts);
   }
   add(branch.facts);
-  ThreadFacts facts{branch.span, std::nullopt, arena.And(assume), arena.And(guarantee)};
+  ThreadFacts facts{branch.span, std::nullopt, arena.And(assume), arena.And(guarantee), text};
   if (!region.empty()) facts.region = arena.And(region);
   return facts;
 }

@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "expr/substitute.h"
+
 namespace rondo::choreo {
 
 using expr::Arena;
@@ -55,7 +57,12 @@ std::set<TermId> StatesOfOthers(const Graph& graph, const Scope& scope) {
 
 class Flow {
  public:
-  Flow(const Graph& graph, Arena& arena) : graph_(graph), arena_(arena), facts_(graph.nodes.size()) {}
+  Flow(const Graph& graph, Arena& arena) : graph_(graph), arena_(arena), facts_(graph.nodes.size()) {
+    for (const robot::Body& body : graph.world->bodies) {
+      for (const auto& v : body.inputs) outside_.insert(v.term);
+    }
+    for (const auto& v : graph.world->environment) outside_.insert(v.term);
+  }
 
   std::vector<Facts> Run() {
     Reach(graph_.start, {Conjuncts(arena_, graph_.initially)});
@@ -123,8 +130,11 @@ class Flow {
   Facts After(const Node& motion, const Facts& facts) const {
     Facts result;
     for (Conjunction way : Without(arena_, facts, Changing(graph_, motion))) {
-      for (const Part& p : motion.parts)
-        way.merge(Conjuncts(arena_, graph_.instances[p.instance].contract.post));
+      for (const Part& p : motion.parts) {
+        const robot::Contract& c = graph_.instances[p.instance].contract;
+        way.merge(Conjuncts(arena_, c.post));
+        way.merge(AtTheEnd(motion, c));
+      }
       result.insert(std::move(way));
     }
     return result;
@@ -138,6 +148,27 @@ class Flow {
         carried.merge(robot::VariablesOf(arena_, message.payload[i].terms));
     }
     return With(Without(arena_, facts, carried), message.refinement);
+  }
+
+  // What `during` says of the last moment: all that does not depend on the clock, and the rest if the moment
+  // is known. Inputs and what others do may change as soon as it is over.
+  Conjunction AtTheEnd(const Node& motion, const robot::Contract& contract) const {
+    const TermId clock = graph_.world->clock;
+    std::optional<expr::Rational> end;
+    for (const Part& p : motion.parts) {
+      if (p.duration.most && p.duration.least == *p.duration.most && !p.duration.interruptible) end = p.duration.most;
+    }
+    Conjunction result;
+    for (const TermId part : Conjuncts(arena_, contract.during)) {
+      const bool timed = robot::VariablesOf(arena_, {part}).contains(clock);
+      if (timed && !end) continue;
+      const TermId then =
+          timed ? expr::Substitute(arena_, part, {{clock, arena_.Number(arena_.Real(), *end)}}) : part;
+      const auto variables = robot::VariablesOf(arena_, {then});
+      if (std::ranges::none_of(variables, [&](TermId v) { return outside_.contains(v); }))
+        result.merge(Conjuncts(arena_, then));
+    }
+    return result;
   }
 
   // What is about robots of the thread alone: others go their own way meanwhile.
@@ -172,6 +203,7 @@ class Flow {
   std::vector<Facts> facts_;
   std::map<NodeId, std::map<Scope, Facts>> arrived_;  // at joins, by thread
   std::set<std::pair<NodeId, Scope>> merged_;         // where only what is common is kept
+  std::set<TermId> outside_;  // what no robot determines
   std::vector<NodeId> todo_;
 };
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "choreo/obligations/facts.h"
+#include "expr/defined.h"
 #include "expr/substitute.h"
 
 namespace rondo::choreo {
@@ -54,6 +55,8 @@ class Builder {
              fmt::format("the hull of `{}` does not contain its body", body.type->name.text)},
             {arena_.True(), {*body.body}, arena_.True(), *body.hull});
     }
+    Sat(graph_.source->span, State("in which it begins"), {graph_.initially}, ObligationKind::kInitial);
+    Solid();
     Initial();
     for (size_t i = 0; i < graph_.instances.size(); ++i) {
       instances_ = {i};
@@ -130,9 +133,9 @@ class Builder {
     return arena_.And(related);
   }
 
-  void Lacks(diag::Span span, std::string what) {
+  void Lacks(diag::Span span, std::string what, bool region = false) {
     const bool said = std::ranges::any_of(result_.missing, [&](const Missing& m) { return m.what == what; });
-    if (!said) result_.missing.push_back({span, std::move(what)});
+    if (!said) result_.missing.push_back({span, std::move(what), region});
   }
 
   TermId In(const Shape& shape) { return robot::Contains(arena_, shape, graph_.world->point); }
@@ -146,7 +149,30 @@ class Builder {
     return body ? &*body : nullptr;
   }
 
+  // Where a formula is not true.
+  TermId Fails(TermId formula) { return expr::Complement(arena_, formula); }
+  TermId NoneOf(const std::vector<TermId>& formulas) {
+    std::vector<TermId> all;
+    for (const TermId f : formulas) all.push_back(Fails(f));
+    return arena_.And(all);
+  }
+
   // -- the whole
+
+  // A shape that has no value, or no points, would be in nobody's way.
+  void Solid() {
+    for (const robot::Body& b : graph_.world->bodies) {
+      if (b.body) Exists(b.type->name.span, fmt::format("the body of `{}`", b.name.text), *b.body, arena_.True());
+    }
+    for (const robot::Obstacle& o : graph_.world->obstacles)
+      Exists(o.name.span, fmt::format("the obstacle `{}`", o.name.text), o.shape, arena_.True());
+  }
+
+  void Exists(diag::Span span, const std::string& what, const Shape& shape, TermId when) {
+    Unsat(ObligationKind::kBody, span, {what + " has points, whatever the state is", what + " may have no points"},
+          {when, robot::MayBeEmpty(arena_, shape)});
+    Sat(span, {what + " has points", what + " has no points"}, {when, In(shape)}, ObligationKind::kBody);
+  }
 
   void Initial() {
     for (size_t i = 0; i < graph_.robots.size(); ++i) {
@@ -176,16 +202,53 @@ class Builder {
     const robot::Contract& c = i.contract;
     Sat(span, State("in which " + who + " may begin"),
         {c.pre, arena_.And(c.assume, AtClock(c.during, Number(0)))});
-    Sat(span, State("during " + who), {c.during, c.assume, Elapsed(i.duration)});
+    // What the motion leaves as it is stays as it was required to be.
+    const TermId during = arena_.And({c.during, c.assume, Unchanged(i)});
+    Sat(span, State("during " + who), {during, Elapsed(i.duration)});
+    for (const Rational& t : Instants(i.duration.least, c.during))
+      Sat(span, State(fmt::format("{:.3g} s after {} has begun", t.ToDouble(), who)), {AtClock(during, Seconds(t))});
     if (i.duration.interruptible && c.post != arena_.True()) {
-      Unsat(ObligationKind::kInterrupted, span, {"what " + who + " promises whenever it may be interrupted",
+      Unsat(ObligationKind::kInterrupted, span,
+            {"what " + who + " promises whenever it may be interrupted",
              "what " + who + " promises may not hold when a message ends it"},
-            {c.during, c.assume, Ended(i.duration), arena_.Not(c.post)});
+            {c.during, c.assume, Ended(i.duration), Fails(c.post)});
     }
     // At the latest, if that can be; or some time before.
     const TermId late = i.duration.most ? Seconds(*i.duration.most) : Seconds(i.duration.least);
-    const TermId ends = arena_.And({c.post, c.during, Ended(i.duration)});
+    const TermId ends = arena_.And({c.post, during, Ended(i.duration)});
     Sat(span, State("in which " + who + " ends"), {arena_.Or(AtClock(ends, late), ends)});
+    if (c.footprint) {
+      Unsat(ObligationKind::kBody, span,
+            {"the footprint of " + who + " has a value", "the footprint of " + who + " may have no value"},
+            {c.during, c.assume, Elapsed(i.duration), robot::Undefined(arena_, *c.footprint)});
+    }
+  }
+
+  // Some moments up to `least`, if the formula depends on the clock. There has to be a state at each of them.
+  std::vector<Rational> Instants(const Rational& least, TermId during) const {
+    std::vector<Rational> instants;
+    if (!robot::VariablesOf(arena_, {during}).contains(graph_.world->clock)) return instants;
+    constexpr int kInstants = 4;
+    for (int k = 0; k <= kInstants && !(least.IsZero() && k > 0); ++k)
+      instants.push_back(least * Rational(k) / Rational(kInstants));
+    return instants;
+  }
+
+  // The part of a precondition about states that a motion does not modify.
+  TermId Unchanged(const Instance& i) {
+    std::set<TermId> changing;
+    const robot::Body& body = graph_.BodyOf(i.robot);
+    for (size_t k = 0; k < body.states.size(); ++k) {
+      if (i.contract.modifies[k]) changing.insert(body.states[k].term);
+    }
+    for (const auto& v : body.inputs) changing.insert(v.term);
+    for (const auto& v : graph_.world->environment) changing.insert(v.term);
+    std::vector<TermId> kept;
+    for (const TermId part : Conjuncts(arena_, i.contract.pre)) {
+      const auto variables = robot::VariablesOf(arena_, {part});
+      if (std::ranges::none_of(variables, [&](TermId v) { return changing.contains(v); })) kept.push_back(part);
+    }
+    return arena_.And(kept);
   }
 
   TermId Number(int64_t n) { return arena_.Number(arena_.Real(), Rational(n)); }
@@ -251,35 +314,107 @@ class Builder {
 
   void Choice(NodeId id, const Node& n, const Context& context) {
     auto formulas = Known(id, context);
-    formulas.push_back(arena_.Not(arena_.Or(n.guard_terms)));
+    formulas.push_back(NoneOf(n.guard_terms));
     Unsat(ObligationKind::kTotalChoice, n.span,
           {fmt::format("some alternative of `{}` is open", NameOf(n.chooser)),
            fmt::format("`{}` may have no alternative", NameOf(n.chooser))}, std::move(formulas));
   }
 
   // What is sent is some value as promised, or the value that is stated; the guard holds.
+  // No value among those that come into question is as promised: what the payload is said to equal, what
+  // bounds it, and between. In every state one of them has to do, since receivers rely on the promise.
+  TermId NoPayload(const Node& n) {
+    // Where a way fails: it is not true, or the promise has no value.
+    struct Try {
+      TermId holds, undefined;
+    };
+    std::vector<Try> ways{{n.refinement, expr::Undefined(arena_, n.refinement)}};
+    std::set<TermId> carried;
+    for (size_t i = 0; i < n.payload.size(); ++i) {
+      if (i < n.names.size() && !n.names[i].empty()) carried.merge(robot::VariablesOf(arena_, n.payload[i].terms));
+    }
+    for (const TermId v : carried) {
+      std::vector<Try> next;
+      for (const Try& way : ways) {
+        for (const TermId candidate : Candidates(way.holds, v)) {
+          next.push_back({expr::Substitute(arena_, way.holds, {{v, candidate}}),
+                          expr::Substitute(arena_, way.undefined, {{v, candidate}})});
+        }
+      }
+      constexpr size_t kMostWays = 64;
+      if (next.size() > kMostWays) next.resize(kMostWays);
+      ways = std::move(next);
+    }
+    std::vector<TermId> fails;
+    for (const Try& way : ways) fails.push_back(arena_.Or(Fails(way.holds), way.undefined));
+    return arena_.And(fails);
+  }
+
+  // Values of `v` at which comparisons change.
+  std::vector<TermId> Candidates(TermId formula, TermId v) {
+    if (arena_.sort_of(v) == arena_.Bool()) return {arena_.True(), arena_.False()};
+    std::vector<TermId> bounds;
+    std::unordered_set<TermId> seen;
+    const TermId zero = Number(0), one = Number(1);
+    expr::VisitPostorder(arena_, formula, seen, [&](TermId t) {
+      const expr::Op op = arena_.op(t);
+      if (op != expr::Op::kLe && op != expr::Op::kLt && op != expr::Op::kEq) return;
+      if (arena_.sort_of(arena_.arg(t, 0)) == arena_.Bool()) return;
+      // a + b v = 0
+      const TermId difference = arena_.Sub(arena_.arg(t, 0), arena_.arg(t, 1));
+      const TermId a = expr::Substitute(arena_, difference, {{v, zero}});
+      const TermId b = arena_.Sub(expr::Substitute(arena_, difference, {{v, one}}), a);
+      if (robot::VariablesOf(arena_, {a, b}).contains(v) || b == zero) return;
+      bounds.push_back(arena_.Neg(arena_.Divide(a, b)));
+    });
+    std::vector<TermId> values;
+    const TermId half = arena_.Number(arena_.Real(), Rational(1) / Rational(2));
+    for (size_t i = 0; i < bounds.size() && i < 4; ++i) {
+      values.insert(values.end(), {bounds[i], arena_.Add(bounds[i], one), arena_.Sub(bounds[i], one)});
+      for (size_t j = 0; j < i; ++j) values.push_back(arena_.Mul(half, arena_.Add(bounds[i], bounds[j])));
+    }
+    if (values.empty()) values.push_back(zero);
+    return values;
+  }
+
   void Message(NodeId id, const Node& n, const Context& context) {
     auto formulas = Known(id, context);
-    formulas.push_back(arena_.Not(n.when));
+    formulas.push_back(Fails(n.when));
     if (n.when != arena_.True())
       Unsat(ObligationKind::kMessage, n.span, Noun(fmt::format("the guard of `{}`", n.label)), std::move(formulas));
-    if (n.refinement != arena_.True())
-      Sat(n.span, {fmt::format("something that `{}` may carry", n.label),
-                   fmt::format("there is nothing that `{}` may carry", n.label)}, {n.refinement});
+    if (n.refinement == arena_.True()) return;
+    formulas.back() = NoPayload(n);
+    Unsat(ObligationKind::kMessage, n.span,
+          {fmt::format("something that `{}` may carry", n.label),
+           fmt::format("there may be nothing that `{}` can carry as promised", n.label)},
+          std::move(formulas));
+  }
+
+  // How long a step takes at most: no longer than any of its motions.
+  static Duration StepOf(const Node& n) {
+    Duration step{Rational(0), std::nullopt, true};
+    for (const Part& p : n.parts) {
+      if (p.duration.most && (!step.most || *p.duration.most < *step.most)) step.most = p.duration.most;
+    }
+    return step;
   }
 
   void Motion(NodeId id, const Node& n, const Context& context) {
-    Duration step{Rational(0), std::nullopt, true};
     std::vector<TermId> during = context.assumptions;
-    for (const Part& p : n.parts) {
-      const robot::Contract& c = graph_.instances[p.instance].contract;
-      during.push_back(c.during);
-      if (p.duration.most && (!step.most || *p.duration.most < *step.most)) step.most = p.duration.most;
-    }
-    during.push_back(Elapsed(step));
+    for (const Part& p : n.parts) during.push_back(graph_.instances[p.instance].contract.during);
+    during.push_back(Elapsed(StepOf(n)));
     // What nothing changes stays as it was.
     const TermId kept = Kept(graph_, n, facts_[id.index()], arena_);
     during.push_back(kept);
+    Rational least(0);
+    for (const Part& p : n.parts) {
+      if (!p.duration.interruptible && least < p.duration.least) least = p.duration.least;
+    }
+    const TermId together = arena_.And(during);
+    for (const Rational& t : Instants(least, together)) {
+      Sat(n.span, State(fmt::format("{:.3g} s after {} has begun", t.ToDouble(), TextOf(n))),
+          {AtClock(together, Seconds(t))});
+    }
     for (const Part& p : n.parts) {
       instances_ = {p.instance};
       Alone(id, p, during, context);
@@ -292,7 +427,7 @@ class Builder {
     Sat(n.span, {fmt::format("{} begins", TextOf(n)), fmt::format("{} never begins", TextOf(n))}, std::move(begins), ObligationKind::kReached);
     for (const auto& [guarantee, span] : context.guarantees) {
       auto formulas = during;
-      formulas.push_back(arena_.Not(guarantee));
+      formulas.push_back(Fails(guarantee));
       Unsat(ObligationKind::kGuarantee, n.span, Noun("what the thread guarantees"), std::move(formulas));
     }
     for (size_t i = 0; i < n.parts.size(); ++i) {
@@ -319,12 +454,12 @@ class Builder {
     const robot::Contract& c = instance.contract;
     const std::string who = fmt::format("`{}: {}`", NameOf(p.robot), instance.text);
     auto formulas = Known(id, context);
-    formulas.push_back(arena_.Not(c.pre));
+    formulas.push_back(Fails(c.pre));
     if (c.pre != arena_.True())
       Unsat(ObligationKind::kPrecondition, p.span, Noun("the precondition of " + who), formulas);
     // Its `during`, as it begins.
     const TermId begins = AtClock(c.during, Number(0));
-    formulas.back() = arena_.Not(begins);
+    formulas.back() = Fails(begins);
     if (begins != arena_.True())
       Unsat(ObligationKind::kStart, p.span, {fmt::format("{} begins where its `during` does", who),
              fmt::format("the controller of {} has to bridge its beginning", who)}, formulas);
@@ -344,7 +479,7 @@ class Builder {
     }
     if (context.region)
       all_the_time(ObligationKind::kRegion, {"the region of " + who, who + " may leave the region of its thread"},
-                   {{}, {*c.footprint}, arena_.Not(*context.region), {}});
+                   {{}, {*c.footprint}, Fails(*context.region), {}});
   }
 
   // From the promises of those that assume nothing themselves, so that no promise rests on itself; and, for
@@ -359,7 +494,7 @@ class Builder {
     }
     formulas.push_back(kept);
     formulas.push_back(Elapsed(instance.duration));
-    formulas.push_back(arena_.Not(instance.contract.assume));
+    formulas.push_back(Fails(instance.contract.assume));
     Unsat(ObligationKind::kAssumption, p.span,
           Noun(fmt::format("what `{}: {}` assumes", NameOf(p.robot), instance.text)), std::move(formulas));
   }
@@ -385,8 +520,9 @@ class Builder {
       known.push_back(c.moving ? Kept(graph_, graph_[id], facts, arena_)
                                : OwnFacts(graph_, c.robot, facts, arena_));
     }
-    const std::vector<TermId> formulas{known.empty() ? arena_.True() : arena_.Or(known), c.hypothesis,
-                                       arena_.Not(c.goal)};
+    std::vector<TermId> formulas{known.empty() ? arena_.True() : arena_.Or(known), c.hypothesis};
+    if (c.moving && c.at.size() == 1) formulas.push_back(Elapsed(StepOf(graph_[c.at[0]])));
+    formulas.push_back(Fails(c.goal));
     const std::string what = c.what.substr(c.what.find(' ') + 1);  // "whether ..."
     Unsat(ObligationKind::kProcess, c.span, {what, "it does not follow that " + what}, formulas);
   }
@@ -415,19 +551,19 @@ class Builder {
     for (size_t b = 0; b < n.next.size(); ++b) {
       const ThreadFacts& own = n.facts[b];
       const std::string robots = graph_.Names(n.threads[b]);
-      if (!own.region) Lacks(own.span, fmt::format("a region for {}", robots));
+      if (!own.region) Lacks(own.span, fmt::format("a region for {}", robots), true);
       std::vector<TermId> others = context.assumptions;
       for (size_t j = 0; j < n.next.size(); ++j) {
         if (j != b) others.push_back(n.facts[j].guarantee);
       }
       if (own.assume != arena_.True()) {
-        others.push_back(arena_.Not(own.assume));
+        others.push_back(Fails(own.assume));
         Unsat(ObligationKind::kThread, own.span, Noun(fmt::format("what the thread of {} assumes", robots)),
               std::move(others));
       }
       if (own.region && context.region) {
         auto formulas = context.assumptions;
-        formulas.insert(formulas.end(), {own.assume, *own.region, arena_.Not(*context.region)});
+        formulas.insert(formulas.end(), {own.assume, *own.region, Fails(*context.region)});
         Unsat(ObligationKind::kFork, own.span, {fmt::format("the region of {} within that around it", robots),
                fmt::format("the region of {} reaches beyond that around it", robots)},
               std::move(formulas));

@@ -55,6 +55,7 @@ struct Obligation {
 struct Missing {
   diag::Span span;
   std::string what;
+  bool region = false;  ///< of a thread
 };
 
 struct Obligations {

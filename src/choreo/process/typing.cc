@@ -9,6 +9,7 @@
 
 #include "choreo/process/compare.h"
 #include "choreo/process/flow.h"
+#include "expr/defined.h"
 
 namespace rondo::choreo {
 namespace {
@@ -322,7 +323,7 @@ class Typing {
       } else if (node.kind == FlowKind::kIf) {
         const TermId guard = compare_.GuardOf(node);
         conditions[node.next].push_back(arena_.And(condition, guard));
-        conditions[node.otherwise].push_back(arena_.And(condition, arena_.Not(guard)));
+        conditions[node.otherwise].push_back(arena_.And(condition, expr::Complement(arena_, guard)));
       } else {
         leaves.push_back({order[i], condition});
       }

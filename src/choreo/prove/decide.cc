@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "expr/defined.h"
 #include "expr/import.h"
 #include "robot/separation/cuts.h"
 
@@ -48,22 +50,6 @@ class Copy {
  private:
   expr::Importer import_;
 };
-
-Numeric::Point PointOf(const solve::Answer& answer) {
-  Numeric::Point point;
-  if (const auto* sat = std::get_if<solve::Sat>(&answer)) {
-    for (const auto& [term, value] : sat->values) {
-      if (value.IsNumber()) point.emplace(term, value.AsNumber().ToDouble());
-    }
-  } else if (const auto* delta = std::get_if<solve::DeltaSat>(&answer)) {
-    for (const auto& [term, range] : delta->box) {
-      const auto [lo, hi] = range;
-      const bool low = std::isfinite(lo), high = std::isfinite(hi);
-      point.emplace(term, low && high ? lo + (hi - lo) / 2 : low ? lo : high ? hi : 0);
-    }
-  }
-  return point;
-}
 
 class Deciding {
  public:
@@ -191,7 +177,7 @@ class Deciding {
   bool Sizes() {
     if (!meeting_->beyond || meeting_->shapes.size() != 1) return false;
     const TermId within = robot::Within(arena_, meeting_->shapes[0], *meeting_->beyond);
-    const TermId formula = arena_.And(meeting_->configuration, arena_.Not(within));
+    const TermId formula = arena_.And(meeting_->configuration, expr::Complement(arena_, within));
     solve::Answer answer = Ask(formula, true);
     if (!IsUnsat(answer)) return false;
     Proved(Way::kSizes);
@@ -248,6 +234,7 @@ class Deciding {
       for (const double slack : {0.0, 1e-6, 1e-3}) {
         std::vector<TermId> near{whole};
         for (const auto& [variable, value] : PointOf(*meets_)) {
+          if (!std::isfinite(value)) continue;
           const TermId at = arena_.Number(arena_.Real(), expr::Rational::FromDouble(value));
           const TermId by = arena_.Number(arena_.Real(), expr::Rational::FromDouble(slack));
           near.push_back(arena_.Le(arena_.Sub(variable, at), by));
@@ -285,7 +272,7 @@ class Deciding {
     std::vector<TermId> near{whole};
     for (size_t i = 0; i + 3 < names_.size(); ++i) {
       const auto it = local.find(names_[i].first);
-      if (it == local.end()) continue;
+      if (it == local.end() || !std::isfinite(it->second)) continue;
       const TermId at = arena_.Number(arena_.Real(), expr::Rational::FromDouble(it->second));
       const TermId by = arena_.Number(arena_.Real(), expr::Rational::FromDouble(1e-6));
       near.push_back(arena_.Le(arena_.Sub(names_[i].second, at), by));
@@ -311,6 +298,22 @@ class Deciding {
 };
 
 }  // namespace
+
+Numeric::Point PointOf(const solve::Answer& answer) {
+  Numeric::Point point;
+  if (const auto* sat = std::get_if<solve::Sat>(&answer)) {
+    for (const auto& [term, value] : sat->values) {
+      if (value.IsNumber()) point.emplace(term, value.AsNumber().ToDouble());
+    }
+  } else if (const auto* delta = std::get_if<solve::DeltaSat>(&answer)) {
+    for (const auto& [term, range] : delta->box) {
+      const auto [lo, hi] = range;
+      const bool low = std::isfinite(lo), high = std::isfinite(hi);
+      point.emplace(term, low && high ? lo / 2 + hi / 2 : low ? lo : high ? hi : 0);
+    }
+  }
+  return point;
+}
 
 Decision Decide(const Obligation& obligation, const robot::World& world, const Arena& arena,
                 const solve::icp::Options& engine, const Limits& limits, const base::StopToken& stop) {

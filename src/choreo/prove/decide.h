@@ -43,6 +43,9 @@ struct Limits {
   bool separation = true;  ///< off: only the general way over points, to compare
 };
 
+/// Values of the real variables in an answer: of `Sat`, or in the middle of the box of `DeltaSat`.
+expr::Numeric::Point PointOf(const solve::Answer& answer);
+
 /// Decides one obligation. Thread-safe: works on copies of the terms. `point`, `clock`: the world's.
 Decision Decide(const Obligation& obligation, const robot::World& world, const expr::Arena& arena,
                 const solve::icp::Options& engine, const Limits& limits, const base::StopToken& stop);

@@ -75,13 +75,14 @@ class Proving {
         Decide(obligation, *graph_.world, arena_, solve::icp::Options{}, options_.limits, options_.stop);
     if (proof.decision.verdict != Verdict::kProved) return proof;
     if (certify) Certify(proof, obligation, number);
-    if (options_.cache != nullptr && proof.decision.verdict == Verdict::kProved)
+    if (options_.cache != nullptr && proof.decision.verdict == Verdict::kProved && proof.certified == certify)
       options_.cache->Store(key, {std::string(kEngine), {}});
     return proof;
   }
 
   // A proof that the checker does not accept is none.
   void Certify(Proof& proof, const Obligation& obligation, size_t number) {
+    const base::StopToken stop = options_.stop.WithDeadline(Clock::now() + options_.limits.time);
     auto& certificates = proof.decision.certificates;
     for (size_t i = 0; i < certificates.size(); ++i) {
       if (!options_.certificates.empty()) {
@@ -94,12 +95,8 @@ class Proving {
       solve::certify::ReadCertificate(sources, sources.Add("certificate", certificates[i]), certificate,
                                       diagnostics);
       solve::certify::Tally tally;
-      if (!diagnostics.has_errors()) tally = solve::certify::Check(certificate, diagnostics, options_.stop);
-      if (tally.stopped) {
-        proof.decision.verdict = Verdict::kUnknown;
-        proof.decision.reason = "interrupted";
-        return;
-      }
+      if (!diagnostics.has_errors()) tally = solve::certify::Check(certificate, diagnostics, stop);
+      if (tally.stopped) return;  // proved, and not certified
       if (!diagnostics.has_errors()) continue;
       proof.decision.verdict = Verdict::kUnknown;
       proof.decision.reason = "its certificate was rejected";

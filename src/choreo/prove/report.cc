@@ -174,12 +174,8 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
 std::vector<std::string> AssumptionsOf(const Graph& graph, const Obligations& obligations, const Proofs& proofs) {
   std::vector<std::string> result;
   std::set<std::string> motions;
-  for (const Node& n : graph.nodes) {
-    for (const Part& p : n.parts) {
-      const Instance& i = graph.instances[p.instance];
-      motions.insert(fmt::format("{}.{}", graph.BodyOf(p.robot).type->name.text, i.motion->name.text));
-    }
-  }
+  for (const Instance& i : graph.instances)
+    motions.insert(fmt::format("{}.{}", graph.BodyOf(i.robot).type->name.text, i.motion->name.text));
   if (!motions.empty())
     result.push_back(fmt::format("controllers keep the contracts of {}", fmt::join(motions, ", ")));
   std::set<std::string> ranges;

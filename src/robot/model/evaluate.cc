@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lang/suggest.h"
+#include "expr/defined.h"
 #include "robot/model/functions.h"
 
 namespace rondo::robot {
@@ -222,7 +223,7 @@ Value Evaluator::Unary(const Expr& e, const Scope& scope) {
   if (a.kind == ValueKind::kError) return {};
   if (e.text == "not") {
     if (a.kind != ValueKind::kBool) return WrongType(pool_[e.args[0]].span, a, "a formula");
-    return Boolean(arena_.Not(a.terms[0]));
+    return Boolean(expr::Complement(arena_, a.terms[0]));
   }
   if (a.kind != ValueKind::kQuantity && a.kind != ValueKind::kCoordinates)
     return WrongType(pool_[e.args[0]].span, a, "a quantity");
@@ -268,7 +269,7 @@ Value Evaluator::Binary(const Expr& e, const Scope& scope) {
     if (b.kind != ValueKind::kBool) return WrongType(pool_[e.args[1]].span, b, "a formula");
     if (o == "and") return Boolean(arena_.And(a.terms[0], b.terms[0]));
     if (o == "or") return Boolean(arena_.Or(a.terms[0], b.terms[0]));
-    return Boolean(arena_.Implies(a.terms[0], b.terms[0]));
+    return Boolean(arena_.Or(expr::Complement(arena_, a.terms[0]), b.terms[0]));
   }
   if (o == "+" || o == "-") return Sum(e, std::move(a), std::move(b));
   if (o == "*") return Product(e, a, b);
@@ -277,7 +278,7 @@ Value Evaluator::Binary(const Expr& e, const Scope& scope) {
     if (a.kind != ValueKind::kPoint) return WrongType(pool_[e.args[0]].span, a, "a point of the world");
     if (b.kind != ValueKind::kShape) return WrongType(pool_[e.args[1]].span, b, "a shape");
     const TermId in = robot::Contains(arena_, *b.shape, {a.terms[0], a.terms[1], a.terms[2]});
-    return Boolean(o == "in" ? in : arena_.Not(in));
+    return Boolean(o == "in" ? in : expr::Complement(arena_, in));
   }
   if (o == "==" || o == "!=") return Equality(e, std::move(a), std::move(b));
   if (o == "<" || o == "<=" || o == ">" || o == ">=") return Comparison(e, std::move(a), std::move(b));
@@ -377,7 +378,7 @@ Value Evaluator::Equality(const Expr& e, Value a, Value b) {
     for (size_t i = 0; i < a.terms.size(); ++i) equal.push_back(arena_.Eq(a.terms[i], b.terms[i]));
   }
   const TermId all = arena_.And(equal);
-  return Boolean(e.text == "==" ? all : arena_.Not(all));
+  return Boolean(e.text == "==" ? all : expr::Complement(arena_, all));
 }
 
 }  // namespace rondo::robot

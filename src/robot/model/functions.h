@@ -71,6 +71,7 @@ class Functions {
   Value Cylinder(Arguments& a);
   Value Box(Arguments& a);
   Value Prism(Arguments& a);
+  bool IsAbove(const Face& face, const Value& point);
   Value Hexagon(Arguments& a);
   Value HalfSpace(Arguments& a);
   Value HalfSphere(Arguments& a);

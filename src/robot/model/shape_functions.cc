@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "expr/numeric.h"
 #include "robot/model/functions.h"
 
 namespace rondo::robot {
@@ -50,6 +51,14 @@ Value Functions::Box(Arguments& a) {
   return Solid(a, std::move(s));
 }
 
+// Is the point above the face, as far as numbers tell? Corners on it are not.
+bool Functions::IsAbove(const Face& f, const Value& point) {
+  expr::Numeric numeric(arena_, {});
+  const double height = numeric(f.normal[0]) * numeric(point.terms[0]) +
+                        numeric(f.normal[1]) * numeric(point.terms[1]) - numeric(f.offset);
+  return !(height <= 1e-9 * numeric(f.length));
+}
+
 // prism(frame, from, to, (x, y), ...): a convex polygon, counterclockwise.
 Value Functions::Prism(Arguments& a) {
   if (!NeedFrame(a, 0) || !Need(a, 1, kLength, "a length") || !Need(a, 2, kLength, "a length")) return {};
@@ -65,6 +74,7 @@ Value Functions::Prism(Arguments& a) {
     if (!good) return e_.WrongType(SpanOf(a, 3 + i), p, "a corner `(x, y)`");
     if (!p.any_dimension && !(p.dimension == kLength))
       return e_.WrongUnit(SpanOf(a, 3 + i), p, "coordinates in m");
+    if (!IsConstant(arena_, p)) return e_.WrongType(SpanOf(a, 3 + i), p, "a constant corner");
   }
   for (size_t i = 0; i < corners; ++i) {
     const Value& p = a.values[3 + i];
@@ -77,7 +87,7 @@ Value Functions::Prism(Arguments& a) {
       const Value& r = a.values[3 + j];
       const TermId above = arena_.Lt(
           f.offset, arena_.Add(arena_.Mul(f.normal[0], r.terms[0]), arena_.Mul(f.normal[1], r.terms[1])));
-      if (above != arena_.True()) continue;
+      if (above != arena_.True() && !IsAbove(f, r)) continue;
       e_.diagnostics_.Report(
           Kind::kRobotType, SpanOf(a, 3 + j),
           "the corners of a prism go counterclockwise around a convex polygon, but this one does not");
@@ -99,6 +109,13 @@ Value Functions::Hexagon(Arguments& a) {
   s.kind = ShapeKind::kPrism;
   s.frame = *a.values[0].pose;
   const TermId zero = Number(Rational(0)), one = Number(Rational(1));
+  for (const size_t i : {size_t{1}, size_t{2}}) {
+    if (!IsConstant(arena_, a.values[i])) return e_.WrongType(SpanOf(a, i), a.values[i], "a constant");
+    if (Below(a.values[i].terms[0], zero)) {
+      e_.diagnostics_.Report(Kind::kRobotType, SpanOf(a, i), "this hexagon is empty");
+      return {};
+    }
+  }
   s.sizes = {zero, a.values[3].terms[0]};
   const TermId half = Number(Rational(1) / Rational(2));
   const TermId height = arena_.Mul(half, arena_.Apply(Elementary::kSqrt, {Number(Rational(3))}));

@@ -92,7 +92,7 @@ class Search {
     for (size_t i = 0; i < piece_.size(); ++i) {
       if (i != first) scale = std::max({scale, best.factors[i], best.directions[i].lpNorm<Eigen::Infinity>()});
     }
-    if (!(scale > 0)) return false;
+    if (!(scale > 0) || !std::isfinite(scale)) return false;
     const TermId zero = arena_.Number(arena_.Real(), Rational(0));
     std::vector<TermId> sum;
     Vector rest{zero, zero, zero};

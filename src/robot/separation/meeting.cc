@@ -1,5 +1,6 @@
 #include "robot/separation/meeting.h"
 
+#include "expr/defined.h"
 #include "expr/substitute.h"
 #include "robot/separation/set.h"
 
@@ -10,7 +11,7 @@ using expr::Rational;
 TermId Formula(Arena& arena, const Vector& point, const Meeting& meeting) {
   std::vector<TermId> all{meeting.configuration, meeting.where};
   for (const Shape& s : meeting.shapes) all.push_back(Contains(arena, s, point));
-  if (meeting.beyond) all.push_back(arena.Not(Contains(arena, *meeting.beyond, point)));
+  if (meeting.beyond) all.push_back(expr::Complement(arena, Contains(arena, *meeting.beyond, point)));
   return arena.And(all);
 }
 
@@ -41,7 +42,7 @@ std::vector<TermId> LocalFormulas(Arena& arena, const Vector& point, const Meeti
       conjuncts.push_back(Contains(arena, meeting.shapes[i], there));
     conjuncts.push_back(expr::Substitute(
         arena, meeting.where, {{point[0], there[0]}, {point[1], there[1]}, {point[2], there[2]}}));
-    if (meeting.beyond) conjuncts.push_back(arena.Not(Contains(arena, *meeting.beyond, there)));
+    if (meeting.beyond) conjuncts.push_back(expr::Complement(arena, Contains(arena, *meeting.beyond, there)));
     all.push_back(arena.And(conjuncts));
   }
   return all;
@@ -117,6 +118,53 @@ TermId Within(Arena& arena, const Shape& inner, const Shape& outer) {
   if (inner.kind == ShapeKind::kSphere || inner.kind == ShapeKind::kHalfSphere)
     all.push_back(arena.Le(inner.sizes[0], outer.sizes[0]));
   return arena.And(all);
+}
+
+TermId Undefined(Arena& arena, const Shape& shape) {
+  std::vector<TermId> terms = shape.sizes;
+  for (const Vector& row : shape.frame.rotation) terms.insert(terms.end(), row.begin(), row.end());
+  terms.insert(terms.end(), shape.frame.origin.begin(), shape.frame.origin.end());
+  for (const Face& f : shape.faces) {
+    terms.insert(terms.end(), f.normal.begin(), f.normal.end());
+    terms.push_back(f.offset);
+  }
+  std::vector<TermId> all;
+  for (const TermId t : terms) {
+    if (t.valid()) all.push_back(expr::Undefined(arena, t));
+  }
+  for (const Shape& p : shape.parts) all.push_back(Undefined(arena, p));
+  return arena.Or(all);
+}
+
+TermId MayBeEmpty(Arena& arena, const Shape& shape) {
+  std::vector<TermId> any{Undefined(arena, shape)};
+  const TermId zero = arena.Number(arena.Real(), Rational(0));
+  const auto slab = [&](size_t low) { any.push_back(arena.Lt(shape.sizes[low + 1], shape.sizes[low])); };
+  switch (shape.kind) {
+    case ShapeKind::kSphere:
+    case ShapeKind::kHalfSphere:
+      any.push_back(arena.Lt(shape.sizes[0], zero));
+      break;
+    case ShapeKind::kCylinder:
+    case ShapeKind::kCapsule:
+      any.push_back(arena.Lt(shape.sizes[0], zero));
+      slab(1);
+      break;
+    case ShapeKind::kBox:
+      slab(0);
+      slab(2);
+      slab(4);
+      break;
+    case ShapeKind::kPrism:
+      slab(0);
+      break;
+    case ShapeKind::kHalfSpace:
+    case ShapeKind::kIntersection:  // of its parts
+    case ShapeKind::kUnion:
+      break;
+  }
+  for (const Shape& p : shape.parts) any.push_back(MayBeEmpty(arena, p));
+  return arena.Or(any);
 }
 
 }  // namespace rondo::robot

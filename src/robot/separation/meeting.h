@@ -27,4 +27,10 @@ std::vector<TermId> LocalFormulas(Arena& arena, const Vector& point, const Meeti
 /// frame: comparisons of sizes. Sufficient, not necessary; false if nothing can be said.
 TermId Within(Arena& arena, const Shape& inner, const Shape& outer);
 
+/// Where some part of a shape has no value.
+TermId Undefined(Arena& arena, const Shape& shape);
+
+/// Where a shape may have no points, as far as sizes tell, or some part of it has no value.
+TermId MayBeEmpty(Arena& arena, const Shape& shape);
+
 }  // namespace rondo::robot

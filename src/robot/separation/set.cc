@@ -4,6 +4,7 @@
 #include <map>
 #include <numbers>
 
+#include "expr/defined.h"
 #include "robot/model/value.h"
 
 namespace rondo::robot {
@@ -281,8 +282,10 @@ std::optional<std::vector<Piece>> PiecesOf(Arena& arena, const Vector& point, co
     if (!cutter.Intersect(s)) return std::nullopt;
   }
   if (!cutter.Intersect(meeting.where, true)) return std::nullopt;
-  if (meeting.beyond && !cutter.Intersect(Contains(arena, *meeting.beyond, point), false))
-    return std::nullopt;
+  if (meeting.beyond) {
+    const TermId outside = expr::Complement(arena, Contains(arena, *meeting.beyond, point));
+    if (!cutter.Intersect(outside, true)) return std::nullopt;
+  }
   return cutter.Take();
 }
 

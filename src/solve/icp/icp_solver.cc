@@ -31,6 +31,16 @@ class Decision {
 
   enum class Status : uint8_t { kUnsat, kSat, kUndecided, kGaveUp };
 
+  // False if there is no solution; else the box is what contraction leaves of everything.
+  bool Enclose() {
+    const Prepared prepared = Prepare(arena_, lowered_.variables, lowered_.conjuncts, {});
+    if (prepared.contradiction) return false;
+    const Tape tape = BuildTape(arena_, lowered_.variables, prepared);
+    const auto box = ContractRoot(tape, *search_.kernels);
+    if (box) Report(*box, tape, prepared);
+    return box.has_value();
+  }
+
   Status Run() { return Decide(lowered_.conjuncts, {}); }
 
   const Solution& solution() const { return solution_; }
@@ -167,6 +177,30 @@ Value ToValue(const Query& query, const Variable& variable, const Rational& numb
 
 }  // namespace
 
+namespace {
+
+Box ToBox(const std::map<TermId, interval::Interval>& ranges, const Lowered& lowered) {
+  Box box;
+  for (const auto& [variable, range] : ranges) {
+    const auto known = lowered.variables.find(variable);
+    if (known == lowered.variables.end() || range.IsEmpty()) continue;
+    box.emplace(known->second.source, std::pair(range.lo, range.hi));
+  }
+  return box;
+}
+
+}  // namespace
+
+std::optional<Box> IcpSolver::Enclose(const Query& query) const {
+  Lowered lowered;
+  Lower(query, lowered);
+  if (!lowered.unsupported.empty()) return std::nullopt;
+  Statistics statistics;
+  Decision decision(lowered, options_, {}, statistics, nullptr);
+  if (!decision.Enclose()) return std::nullopt;
+  return ToBox(decision.box(), lowered);
+}
+
 Answer IcpSolver::Check(const Query& query, const Budget& budget, const base::StopToken& stop) const {
   Statistics statistics;
   return Check(query, budget, stop, statistics);
@@ -203,13 +237,7 @@ Answer IcpSolver::Check(const Query& query, const Budget& budget, const base::St
       return sat;
     }
     case Decision::Status::kUndecided: {
-      DeltaSat delta;
-      for (const auto& [variable, range] : decision.box()) {
-        const auto known = lowered.variables.find(variable);
-        if (known == lowered.variables.end() || range.IsEmpty()) continue;
-        delta.box.emplace(known->second.source, std::pair(range.lo, range.hi));
-      }
-      return delta;
+      return DeltaSat{ToBox(decision.box(), lowered)};
     }
     case Decision::Status::kGaveUp:
       break;

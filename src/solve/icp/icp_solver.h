@@ -15,6 +15,9 @@ struct Options {
   const interval::Kernels* kernels = nullptr;  ///< none: the best of this machine
 };
 
+/// Bounds by variable of the query.
+using Box = std::map<expr::TermId, std::pair<double, double>>;
+
 struct Statistics {
   uint64_t boxes = 0;
   uint64_t cases = 0;    ///< conjunctions that were searched
@@ -34,6 +37,10 @@ class IcpSolver : public Solver {
   /// The same, telling how much it took.
   Answer Check(const Query& query, const Budget& budget, const base::StopToken& stop,
                Statistics& statistics) const;
+
+  /// Bounds of the variables of a query that no solution leaves, by exact arithmetic and contraction alone.
+  /// Nothing if there is no solution, or the query cannot be told in intervals. Bounds may be infinite.
+  std::optional<Box> Enclose(const Query& query) const;
 
  private:
   Options options_;

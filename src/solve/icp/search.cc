@@ -323,6 +323,14 @@ class Worker {
 
 }  // namespace
 
+std::optional<FlatBox> ContractRoot(const Tape& tape, const interval::Kernels& kernels) {
+  SearchOptions options;
+  options.kernels = &kernels;
+  Shared shared(tape, options);
+  if (!shared.Start()) return std::nullopt;
+  return shared.root;
+}
+
 SearchResult Search(const Tape& tape, const SearchOptions& options) {
   Shared shared(tape, options);
   ++shared.boxes;

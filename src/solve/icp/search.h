@@ -49,4 +49,7 @@ struct SearchResult {
 /// variables at worst; polls `stop` between batches.
 SearchResult Search(const Tape& tape, const SearchOptions& options);
 
+/// The box of the tape after contraction, without splitting; nothing if that empties it.
+std::optional<FlatBox> ContractRoot(const Tape& tape, const interval::Kernels& kernels);
+
 }  // namespace rondo::solve::icp

@@ -1,5 +1,7 @@
 #include "solve/icp/verify.h"
 
+#include <algorithm>
+
 #include <cmath>
 
 namespace rondo::solve::icp {
@@ -39,6 +41,8 @@ Verifier::Verifier(Lowered& lowered, const Prepared& prepared, const Tape& tape,
 }
 
 std::optional<Solution> Verifier::Verify(const std::vector<double>& point) {
+  // Descent may have left the domain of a function.
+  if (!std::ranges::all_of(point, [](double x) { return std::isfinite(x); })) return std::nullopt;
   if (auto solution = AtPoint(point)) return solution;
   // Numbers that were meant: what is nearly a multiple of 2^-20 probably is one.
   std::vector<double> rounded = point;

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "expr/arena.h"
+
+namespace rondo::expr {
+
+/// Where some part of a term or a formula has no value: the root of a negative number, the logarithm of one
+/// that is not positive, arcsine and arccosine beyond 1. False if there is no such part.
+TermId Undefined(Arena& arena, TermId term);
+
+/// True exactly where the formula is not. An atomic formula about an undefined term is false, and so is its
+/// negation `Arena::Not`; its complement is true. Without partial functions this is `Arena::Not`.
+TermId Complement(Arena& arena, TermId formula);
+
+}  // namespace rondo::expr
