@@ -17,10 +17,10 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 UNDERPASS = "Cart.x == 0 and Cart.y == 0 and Cart.theta == 0"
 WORLDS = {
-    "fetch": "C: Cart  A: Moveo on C.top",
-    "handover": "Cart: Cart  Arm: Moveo on Cart.top  Carrier: Carrier at translate(1.15 m, 0, 0) * rotate_z(180 deg)",
-    "twist": "Cart: Cart  Arm: Moveo on Cart.top  Carrier: Carrier at translate(0.5 m, 0, 0) * rotate_z(180 deg)",
-    "underpass": "Cart: Cart at rotate_z(90 deg)  Arm: Moveo on Cart.top  Carrier: Carrier at translate(-1.1 m, 0.09 m, 0)",
+    "fetch": "C: Cart  A: Moveo(limit = 131 deg) on C.top",
+    "handover": "Cart: Cart  Arm: Moveo(limit = 131 deg) on Cart.top  Carrier: Carrier at translate(1.15 m, 0, 0) * rotate_z(180 deg)",
+    "twist": "Cart: Cart  Arm: Moveo(limit = 131 deg) on Cart.top  Carrier: Carrier at translate(0.5 m, 0, 0) * rotate_z(180 deg)",
+    "underpass": "Cart: Cart at rotate_z(90 deg)  Arm: Moveo(limit = 131 deg) on Cart.top  Carrier: Carrier at translate(-1.1 m, 0.09 m, 0)",
     "sorting": "arm: Moveo(a_ref = -130 deg, b_ref = 130 deg) at (0, 0.7 m, 0.18 m)  carrier: Carrier at (-0.6 m, 0, 0)\n"
                "franka: Panda at translate(-0.2 m, -1.1 m, 0) * rotate_z(90 deg)  producer: Producer at (-0.95 m, 0, 0)\n"
                "sensor: Sensor at (0.15 m, -0.05 m, 0)",

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "choreo/draw/scene.h"
 #include "choreo/infer/regions.h"
+#include "choreo/prove/sampler.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
 #include "driver/motion.h"
@@ -85,13 +87,51 @@ class Run {
       report.proofs = choreo::Prove(report.obligations, graph, arena, prove);
     }
     report.interrupted = stop_.cancelled();
+    choreo::ConfirmWitnesses(report.obligations, arena, report.proofs);
     choreo::ReportProofs(graph, report.obligations, report.proofs, session_.diagnostics);
-    for (const choreo::NoRegion& n : report.regions.failed) {
-      session_.diagnostics.Report(diag::Kind::kChoreoNoRegion, n.span, "no region was found for this thread")
-          .Note(n.why)
-          .Help("write `thread region ... { ... }`, or let the motions keep farther apart");
-    }
+    ReportRegions(report.regions, session_.diagnostics);
     reports_.push_back(std::move(report));
+    if (!options_.svg.empty() && reports_.size() == 1) picture_ = Picture(reports_.back(), arena);
+  }
+
+  // The scene of the first shapes that fail to keep apart, or else as it begins.
+  static std::string Picture(const MotionReport& report, expr::Arena& arena) {
+    const choreo::Graph& graph = *report.graph;
+    const choreo::Obligation* failed = nullptr;
+    expr::Numeric::Point state;
+    std::string title = fmt::format("{}, as it begins", graph.source->name.text);
+    for (size_t i = 0; i < report.obligations.all.size() && failed == nullptr; ++i) {
+      const auto& [o, d] = std::tie(report.obligations.all[i], report.proofs.all[i].decision);
+      if (!o.meeting || d.verdict == choreo::Verdict::kProved || d.witness.values.empty()) continue;
+      failed = &o;
+      state = d.witness.values;
+      title = o.failure;
+    }
+    if (failed == nullptr) {
+      std::mt19937_64 random(1);
+      if (auto begins = choreo::Sampler(arena, graph.initially).Draw(random, 1000)) state = std::move(*begins);
+    }
+    std::optional<std::array<double, 3>> mark;
+    std::array<double, 3> at{};
+    size_t known = 0;
+    for (size_t i = 0; i < 3; ++i) {
+      const auto it = state.find(graph.world->point[i]);
+      if (it != state.end()) at[i] = it->second, ++known;
+    }
+    if (known == 3) mark = at;
+    std::vector<choreo::Drawn> shapes;
+    for (const robot::Obstacle& o : graph.world->obstacles)
+      shapes.push_back({o.name.text, o.shape, "#666666", "#333333"});
+    for (const robot::Body& b : graph.world->bodies) {
+      const bool placed = std::ranges::all_of(b.states, [&](const auto& v) { return state.contains(v.term); });
+      if (b.body && placed) shapes.push_back({b.name.text, *b.body, "#bbbbbb", "#777777"});
+    }
+    if (failed != nullptr) {
+      constexpr std::array<std::string_view, 2> kFills{"#4080ff", "#ff9020"}, kStrokes{"#1040a0", "#a05000"};
+      for (size_t i = 0; i < failed->meeting->shapes.size() && i < 2; ++i)
+        shapes.push_back({"", failed->meeting->shapes[i], kFills[i], kStrokes[i]});
+    }
+    return choreo::DrawScene(arena, shapes, state, mark, title);
   }
 
   std::chrono::milliseconds Milliseconds() const {
@@ -99,6 +139,8 @@ class Run {
   }
 
   int Finish(int status) {
+    if (!picture_.empty() && WritePicture(options_.svg, picture_, options_.json) != kEstablished)
+      status = Worse(status, kRejected);
     if (options_.json) {
       nlohmann::json list = nlohmann::json::array();
       for (const MotionReport& r : reports_) list.push_back(ToJson(r));
@@ -123,6 +165,7 @@ class Run {
   Session session_;
   base::StopToken stop_;
   std::vector<MotionReport> reports_;
+  std::string picture_;
 };
 
 }  // namespace

@@ -151,6 +151,14 @@ std::string RegionLines(const choreo::Inference& regions, const diag::SourceSet&
   return text;
 }
 
+void ReportRegions(const choreo::Inference& regions, diag::Diagnostics& diagnostics) {
+  for (const choreo::NoRegion& n : regions.failed) {
+    diagnostics.Report(diag::Kind::kChoreoNoRegion, n.span, "no region was found for this thread")
+        .Note(n.why)
+        .Help("write `thread region ... { ... }`, or let the motions keep farther apart");
+  }
+}
+
 std::string MotionSummary(const MotionReport& report, const diag::SourceSet& sources) {
   const Counts total = Total(report);
   const auto& proofs = report.proofs.all;

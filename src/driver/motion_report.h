@@ -23,6 +23,9 @@ int StatusOf(const MotionReport& report);
 /// One line for each kind of obligation: how many hold, fail, are open, and how long that took.
 std::string MotionTable(const MotionReport& report);
 
+/// Reports the threads for which no region was found, and why.
+void ReportRegions(const choreo::Inference& regions, diag::Diagnostics& diagnostics);
+
 /// The verdict and what it rests on.
 std::string MotionSummary(const MotionReport& report, const diag::SourceSet& sources);
 

@@ -57,13 +57,13 @@ nlohmann::json DiagnosticsToJson(const diag::SourceSet& sources, const diag::Dia
   return list;
 }
 
-int WritePicture(const std::string& path, const std::string& svg) {
+int WritePicture(const std::string& path, const std::string& svg, bool quiet) {
   const auto written = base::WriteFileAtomically(path, svg);
   if (!written.ok()) {
     PrintFailure(fmt::format("cannot write `{}`: {}", path, written.error().message));
     return kRejected;
   }
-  Print(fmt::format("wrote {}\n", path));
+  if (!quiet) Print(fmt::format("wrote {}\n", path));
   return kEstablished;
 }
 

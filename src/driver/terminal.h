@@ -24,8 +24,8 @@ void PrintDiagnostics(const diag::SourceSet& sources, const diag::Diagnostics& d
 /// All diagnostics, sorted, as `--json` shows them.
 nlohmann::json DiagnosticsToJson(const diag::SourceSet& sources, const diag::Diagnostics& diagnostics);
 
-/// Writes a picture to a file, as a whole or not at all; says so. The exit status.
-int WritePicture(const std::string& path, const std::string& svg);
+/// Writes a picture to a file, as a whole or not at all; says so, unless `quiet`. The exit status.
+int WritePicture(const std::string& path, const std::string& svg, bool quiet = false);
 
 /// `rondo: message`, for what went wrong outside any source file.
 void PrintFailure(const std::string& message);

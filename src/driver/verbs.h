@@ -10,6 +10,7 @@ namespace rondo::driver {
 void AddCheckVerb(CLI::App& app, int& status);
 void AddFormatVerb(CLI::App& app, int& status);
 void AddAstVerb(CLI::App& app, int& status);
+void AddInferVerb(CLI::App& app, int& status);
 void AddGraphVerb(CLI::App& app, int& status);
 void AddProjectVerb(CLI::App& app, int& status);
 void AddProveVerb(CLI::App& app, int& status);

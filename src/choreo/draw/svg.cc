@@ -56,6 +56,12 @@ void Svg::Rect(double x, double y, double width, double height, const Style& sty
   body_ += style.dashed ? " stroke-dasharray=\"4 3\"/>\n" : "/>\n";
 }
 
+void Svg::Polygon(const std::vector<std::array<double, 2>>& points, const Style& style) {
+  body_ += "<polygon points=\"";
+  for (const auto& [x, y] : points) body_ += fmt::format("{:.1f},{:.1f} ", x, y);
+  body_ += fmt::format("\" fill=\"{}\" fill-opacity=\"0.35\" stroke=\"{}\"/>\n", style.fill, style.stroke);
+}
+
 void Svg::Line(double x1, double y1, double x2, double y2, std::string_view stroke, bool dashed) {
   body_ += fmt::format(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}"{}/>)", x1, y1, x2,
                        y2, stroke, dashed ? R"( stroke-dasharray="4 3")" : "");

@@ -2,6 +2,8 @@
 
 #include <string>
 #include <string_view>
+#include <array>
+#include <vector>
 
 namespace rondo::choreo {
 
@@ -17,6 +19,8 @@ class Svg {
   enum class Anchor : uint8_t { kStart, kMiddle, kEnd };
 
   void Rect(double x, double y, double width, double height, const Style& style);
+  /// Half transparent.
+  void Polygon(const std::vector<std::array<double, 2>>& points, const Style& style);
   void Line(double x1, double y1, double x2, double y2, std::string_view stroke, bool dashed = false);
   /// A line with a head at its end.
   void Arrow(double x1, double y1, double x2, double y2, std::string_view stroke);

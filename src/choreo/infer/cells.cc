@@ -67,7 +67,7 @@ class Separating {
       std::ranges::sort(ends);
       const double length = std::hypot(kDirections[d][0], kDirections[d][1], kDirections[d][2]);
       for (size_t k = 0; k + 1 < ends.size(); ++k) {
-        const double gap = (ends[k + 1] - ends[k]) / length;
+        const double gap = (ends[k + 1] - ends[k]) / length * (d < 3 ? 4 : 1);  // axes are easier to read
         if (!(gap > kLeastGap)) continue;
         Plane plane{d, Round(ends[k], ends[k + 1]), gap, 0};
         plane.score = Score(items, plane);
@@ -187,7 +187,8 @@ std::string Offset(double offset) {
 }
 
 std::string ToText(const std::vector<Cell>& cells) {
-  static constexpr std::array<const char*, kDirections.size()> kNames{"x", "y", "z", "x + y", "x - y"};
+  static constexpr std::array<const char*, kDirections.size()> kNames{"x",     "y",     "z",     "x + y", "x - y",
+                                                                        "x + z", "x - z", "y + z", "y - z"};
   std::string text;
   for (const Cell& cell : cells) {
     std::string part;

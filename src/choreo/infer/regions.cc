@@ -21,6 +21,7 @@ using expr::TermId;
 constexpr size_t kSamples = 200;
 constexpr int kRounds = 16;
 constexpr int kSlabs = 4;
+constexpr size_t kMostCells = 40;
 constexpr std::chrono::milliseconds kPatience{1000};  // for one motion
 
 class Inferring {
@@ -76,7 +77,8 @@ class Inferring {
       if (!Prepare(s, random)) return Fail(id, before, s.thread, fmt::format("no state of {} was found", s.obligation.title));
     }
     bool cut = false;
-    for (int round = 0; round < kRounds && !options_.stop.StopRequested(); ++round) {
+    stop_ = options_.stop.WithDeadline(base::StopToken::Clock::now() + options_.limits.time);
+    for (int round = 0; round < kRounds && !stop_.StopRequested(); ++round) {
       std::vector<Extent> items;
       for (size_t s = 0; s < sources.size(); ++s) AddItems(sources[s], s, items);
       const Cells cells = Separate(std::move(items), threads);
@@ -85,6 +87,10 @@ class Inferring {
         for (Source& s : sources) Cut(s);
         continue;
       }
+      size_t count = 0;
+      for (const auto& own : cells.by_thread) count += own.size();
+      if (!cells.conflict && count > kMostCells)
+        return Fail(id, before, 0, fmt::format("it would take more than {} cells", kMostCells));
       if (cells.conflict) {
         const auto& [a, b] = *cells.conflict;
         return Fail(id, before, a.thread,
@@ -265,9 +271,9 @@ class Inferring {
       Limits limits = options_.limits;
       limits.certificates = false;
       limits.time = std::min(limits.time, kPatience);
-      const Decision d = Decide(o, *graph_.world, arena_, options_.engine, limits, options_.stop);
+      const Decision d = Decide(o, *graph_.world, arena_, options_.engine, limits, stop_);
       if (d.verdict == Verdict::kProved) continue;
-      if (d.witness.values.empty() || options_.stop.StopRequested()) return std::nullopt;
+      if (d.witness.values.empty() || stop_.StopRequested()) return std::nullopt;
       holds = false;
       s.states.push_back(d.witness.values);
     }
@@ -277,6 +283,7 @@ class Inferring {
   Graph& graph_;
   Arena& arena_;
   const InferOptions& options_;
+  base::StopToken stop_;
   Inference inference_;
 };
 

@@ -14,6 +14,7 @@ struct Proof {
   double seconds = 0;
   bool cached = false;     ///< known from an earlier run
   bool certified = false;  ///< proved, and the checker has accepted every certificate
+  bool confirmed = false;  ///< refuted, and FCL sees the contact of the witness as well
 };
 
 struct ProveOptions {

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
+
+#include "robot/contact/contact.h"
 
 namespace rondo::choreo {
 namespace {
@@ -142,6 +145,33 @@ std::string PlaceOf(const Graph& graph, const Witness& witness) {
                      Quantity(at[2], robot::kLength));
 }
 
+void ConfirmWitnesses(const Obligations& obligations, expr::Arena& arena, Proofs& proofs) {
+  constexpr double kTolerance = 1e-6;  // metres, or whatever a formula compares
+  for (size_t i = 0; i < obligations.all.size(); ++i) {
+    const Obligation& o = obligations.all[i];
+    Proof& proof = proofs.all[i];
+    const Witness& witness = proof.decision.witness;
+    if (proof.decision.verdict != Verdict::kRefuted || witness.values.empty()) continue;
+    const auto deny = [&](const std::string& why) {
+      proofs.bug = true;
+      proofs.problems.push_back(fmt::format("the witness of \"{}\" is not confirmed: {}", o.failure, why));
+    };
+    const auto variables = robot::VariablesOf(arena, {o.formula});
+    const bool complete =
+        std::ranges::all_of(variables, [&](expr::TermId v) { return witness.values.contains(v); });
+    if (complete) {
+      const double miss = expr::Numeric(arena, witness.values).Violation(o.formula);
+      if (!(miss <= kTolerance)) deny(fmt::format("the formula fails by {:.3g} there", miss));
+    }
+    if (!o.meeting || o.meeting->shapes.size() != 2) continue;
+    const auto contact =
+        robot::FindContact(arena, o.meeting->shapes[0], o.meeting->shapes[1], witness.values);
+    if (!contact) continue;
+    proof.confirmed = contact->touches || contact->distance <= kTolerance;
+    if (!proof.confirmed) deny(fmt::format("FCL sees a distance of {:.3g} m", contact->distance));
+  }
+}
+
 void ReportProofs(const Graph& graph, const Obligations& obligations, const Proofs& proofs,
                   diag::Diagnostics& diagnostics) {
   for (const Missing& m : obligations.missing) {
@@ -154,6 +184,7 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
     if (d.verdict == Verdict::kRefuted) {
       diag::Diagnostic& report = diagnostics.Report(KindOf(o.kind), o.span, o.failure);
       Explain(graph, o, d.witness, report);
+      if (proofs.all[i].confirmed) report.Note("FCL finds them in contact there, too");
       if (const auto help = HelpFor(o.kind); !help.empty()) report.Help(std::string(help));
       continue;
     }

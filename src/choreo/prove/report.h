@@ -5,6 +5,10 @@
 
 namespace rondo::choreo {
 
+/// Checks witnesses by other means: FCL looks whether shapes touch, and formulas are evaluated in doubles.
+/// What they do not confirm is a bug and added to `proofs.problems`.
+void ConfirmWitnesses(const Obligations& obligations, expr::Arena& arena, Proofs& proofs);
+
 /// Reports what is missing, and each obligation that does not hold or was not decided: what may happen, when,
 /// where and in which state, and what would mend it.
 void ReportProofs(const Graph& graph, const Obligations& obligations, const Proofs& proofs,
