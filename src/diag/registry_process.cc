@@ -60,7 +60,8 @@ constexpr KindInfo kTable[] = {
      "process a in C { send b.left() }\n",
      "check"},
     {Kind::kProcessCondition, "process-condition", Severity::kError, "a process that may deviate",
-     "The steps of the process are those of the choreography, but a guard, an argument or a value that it sends "
+     "The steps of the process are those of the choreography, but a guard, an argument or a value that it "
+     "sends "
      "may be\nanother one than the choreography has there. `rondo prove` found a state in which it is.",
      "robot R {\n  state x : length in [-1 m, 1 m]\n  body sphere(self * translate(x, 0, 0), 1 cm)\n}\n"
      "world W { a: R b: R at (3 m, 0, 0) }\nchoreography C in W {\n  choose at a {\n"

@@ -50,10 +50,12 @@ int Run(const Options& options) {
     infer.progress = [&](const std::string& robots) { line.Show("looking for regions of " + robots); };
     const choreo::Inference regions = choreo::InferRegions(graph, motion->arena, infer);
     text += RegionLines(regions, session.sources);
-    for (const choreo::FoundRegion& r : regions.found) list.push_back({{"robots", r.robots}, {"region", r.text}});
+    for (const choreo::FoundRegion& r : regions.found)
+      list.push_back({{"robots", r.robots}, {"region", r.text}});
     ReportRegions(regions, session.diagnostics);
   }
-  if (!options.json) Print(text.empty() && !session.diagnostics.has_errors() ? "every thread has a region\n" : text);
+  if (!options.json)
+    Print(text.empty() && !session.diagnostics.has_errors() ? "every thread has a region\n" : text);
   return Finish(options, session, list, session.diagnostics.has_errors() ? kUndecided : kEstablished);
 }
 
@@ -64,7 +66,8 @@ void AddInferVerb(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("infer", "find what would otherwise be written by hand");
   verb->require_subcommand(1);
   CLI::App* regions = verb->add_subcommand("regions", "regions for the threads that have none");
-  regions->add_option("FILE", options->files, "a choreography (`.rondo`), perhaps with `.chor` files behind it")
+  regions
+      ->add_option("FILE", options->files, "a choreography (`.rondo`), perhaps with `.chor` files behind it")
       ->required();
   regions->add_option("--option", options->admitted, "an option for every choreography: `equal_durations`")
       ->allow_extra_args(false);
@@ -73,7 +76,8 @@ void AddInferVerb(CLI::App& app, int& status) {
   regions->add_flag("--json", options->json, "the regions as JSON on standard output");
   regions->footer(
       "example: rondo infer regions examples/choreo/shuttle.rondo\n\n"
-      "Prints where each thread is and `thread region ...` to paste there. Every motion of a thread is proved to "
+      "Prints where each thread is and `thread region ...` to paste there. Every motion of a thread is "
+      "proved to "
       "keep to\nits region; `rondo prove` finds the same regions by itself.\n"
       "exit status: 0 every thread has a region now, 1 wrong input, 3 none was found for some");
   regions->callback([options, &status] { status = Run(*options); });

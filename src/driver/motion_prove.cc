@@ -51,8 +51,7 @@ class Run {
   }
 
  private:
-  void Prove(choreo::Graph& graph, const std::vector<choreo::SideCondition>& conditions,
-             expr::Arena& arena) {
+  void Prove(choreo::Graph& graph, const std::vector<choreo::SideCondition>& conditions, expr::Arena& arena) {
     MotionReport report;
     report.graph = &graph;
     {
@@ -109,7 +108,8 @@ class Run {
     }
     if (failed == nullptr) {
       std::mt19937_64 random(1);
-      if (auto begins = choreo::Sampler(arena, graph.initially).Draw(random, 1000)) state = std::move(*begins);
+      if (auto begins = choreo::Sampler(arena, graph.initially).Draw(random, 1000))
+        state = std::move(*begins);
     }
     std::optional<std::array<double, 3>> mark;
     std::array<double, 3> at{};
@@ -123,7 +123,8 @@ class Run {
     for (const robot::Obstacle& o : graph.world->obstacles)
       shapes.push_back({o.name.text, o.shape, "#666666", "#333333"});
     for (const robot::Body& b : graph.world->bodies) {
-      const bool placed = std::ranges::all_of(b.states, [&](const auto& v) { return state.contains(v.term); });
+      const bool placed =
+          std::ranges::all_of(b.states, [&](const auto& v) { return state.contains(v.term); });
       if (b.body && placed) shapes.push_back({b.name.text, *b.body, "#bbbbbb", "#777777"});
     }
     if (failed != nullptr) {

@@ -130,9 +130,9 @@ std::string MotionTable(const MotionReport& report) {
     width = std::max(width, Words(o.kind).size());
   });
   const Counts total = Total(report);
-  std::string text =
-      fmt::format("{}: {} obligations{}\n", report.graph->source->name.text, total.holds + total.fails + total.open,
-                  cached > 0 ? fmt::format(" ({} known from the cache)", cached) : "");
+  std::string text = fmt::format("{}: {} obligations{}\n", report.graph->source->name.text,
+                                 total.holds + total.fails + total.open,
+                                 cached > 0 ? fmt::format(" ({} known from the cache)", cached) : "");
   for (const auto& [kind, c] : rows) {
     std::string cells = fmt::format("{:>4} ok", c.holds);
     if (c.fails > 0) cells += fmt::format("  {} FAIL", c.fails);
@@ -180,7 +180,8 @@ std::string MotionSummary(const MotionReport& report, const diag::SourceSet& sou
                        uncertified == 0 ? "proved and certified" : "proved", name);
     if (uncertified > 0) text += fmt::format("not certified: {} of {} proofs\n", uncertified, proofs.size());
   }
-  if (!report.regions.found.empty()) text += "regions that were found:\n" + RegionLines(report.regions, sources);
+  if (!report.regions.found.empty())
+    text += "regions that were found:\n" + RegionLines(report.regions, sources);
   for (const std::string& a : choreo::AssumptionsOf(*report.graph, report.obligations, report.proofs))
     text += fmt::format("assumed: {}\n", a);
   if (report.interrupted) text += "interrupted: what is marked `?` was not decided\n";

@@ -146,11 +146,12 @@ int Dispatch(Options& options, const CLI::App& verb) {
 
 void AddProveVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb =
-      app.add_subcommand("prove", "prove Koord programs for any number of robots, and choreographies of motions");
-  verb->add_option("FILE", options->files,
-                   "a Koord program (`NAME.spec` beside it belongs to it), or a choreography (`.rondo`), perhaps "
-                   "with original choreographies (`.chor`) and programs (`ROBOT.rosl`) behind it")
+  CLI::App* verb = app.add_subcommand(
+      "prove", "prove Koord programs for any number of robots, and choreographies of motions");
+  verb->add_option(
+          "FILE", options->files,
+          "a Koord program (`NAME.spec` beside it belongs to it), or a choreography (`.rondo`), perhaps "
+          "with original choreographies (`.chor`) and programs (`ROBOT.rosl`) behind it")
       ->required();
   verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
   verb->add_option("--robots", options->robots, "fix the number of robots; default: every N >= 1")
@@ -166,9 +167,11 @@ void AddProveVerb(CLI::App& app, int& status) {
       ->allow_extra_args(false);
   verb->add_option("--certificates", options->certificates,
                    "write every certificate of a choreography into this folder, for `rondo certify`");
-  verb->add_option("--svg", options->svg,
-                   "draw the scene of the first collision or region that fails: from above and from the side");
-  verb->add_flag("--no-certify", options->no_certify, "do not write and check certificates of choreographies");
+  verb->add_option(
+      "--svg", options->svg,
+      "draw the scene of the first collision or region that fails: from above and from the side");
+  verb->add_flag("--no-certify", options->no_certify,
+                 "do not write and check certificates of choreographies");
   verb->add_flag("--no-cache", options->no_cache, "neither use nor fill the proof cache");
   verb->add_flag("--json", options->json, "the verdicts as JSON on standard output");
   verb->footer(

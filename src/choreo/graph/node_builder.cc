@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "lang/expr_printer.h"
 #include "expr/defined.h"
 #include "expr/substitute.h"
+#include "lang/expr_printer.h"
 
 namespace rondo::choreo {
 
@@ -277,7 +277,9 @@ ThreadFacts NodeBuilder::Facts(const Branch& branch) {
       const bool space = c.keyword.text == "region";
       const robot::Scope& names = space ? graph_.world->point_scope : graph_.world->scope;
       const TermId formula = evaluator_.Formula(c.value, names, "a formula");
-      if (space) text += fmt::format("{}({})", text.empty() ? "" : " and ", lang::PrintExpr(evaluator_.pool(), c.value));
+      if (space)
+        text +=
+            fmt::format("{}({})", text.empty() ? "" : " and ", lang::PrintExpr(evaluator_.pool(), c.value));
       (space ? region : c.keyword.text == "assume" ? assume : guarantee).push_back(formula);
     }
   };

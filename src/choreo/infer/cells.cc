@@ -72,7 +72,8 @@ class Separating {
         Plane plane{d, Round(ends[k], ends[k + 1]), gap, 0};
         plane.score = Score(items, plane);
         if (!(plane.score > 0)) continue;
-        if (!best || plane.score > best->score || (plane.score == best->score && gap > best->gap)) best = plane;
+        if (!best || plane.score > best->score || (plane.score == best->score && gap > best->gap))
+          best = plane;
       }
     }
     return best;
@@ -113,9 +114,8 @@ class Separating {
     double spread = 1e-3;
     for (size_t i = 0; i < items.size(); ++i) {
       if (items[i].moments.size() < 6) continue;
-      const bool overlaps = std::ranges::any_of(items, [&](const Extent& j) {
-        return j.thread != items[i].thread && Overlap(items[i], j);
-      });
+      const bool overlaps = std::ranges::any_of(
+          items, [&](const Extent& j) { return j.thread != items[i].thread && Overlap(items[i], j); });
       if (!overlaps) continue;
       for (size_t d = 0; d < kDirections.size(); ++d) {
         const auto middle = [&](const Extent::Moment& m) { return m.least[d] + m.most[d]; };
@@ -177,7 +177,9 @@ double Extent::Most(size_t direction) const {
   return std::min(most, to[direction]);
 }
 
-Cells Separate(std::vector<Extent> items, size_t threads) { return Separating(threads).Run(std::move(items)); }
+Cells Separate(std::vector<Extent> items, size_t threads) {
+  return Separating(threads).Run(std::move(items));
+}
 
 std::string Offset(double offset) {
   std::string text = fmt::format("{:.4f}", offset);
@@ -187,8 +189,8 @@ std::string Offset(double offset) {
 }
 
 std::string ToText(const std::vector<Cell>& cells) {
-  static constexpr std::array<const char*, kDirections.size()> kNames{"x",     "y",     "z",     "x + y", "x - y",
-                                                                        "x + z", "x - z", "y + z", "y - z"};
+  static constexpr std::array<const char*, kDirections.size()> kNames{
+      "x", "y", "z", "x + y", "x - y", "x + z", "x - z", "y + z", "y - z"};
   std::string text;
   for (const Cell& cell : cells) {
     std::string part;
@@ -201,7 +203,8 @@ std::string ToText(const std::vector<Cell>& cells) {
           offset = !offset ? s.offset : below ? std::min(*offset, s.offset) : std::max(*offset, s.offset);
         }
         if (!offset) continue;
-        part += fmt::format("{}{} {} {} m", part.empty() ? "" : " and ", kNames[d], below ? "<" : ">", Offset(*offset));
+        part += fmt::format("{}{} {} {} m", part.empty() ? "" : " and ", kNames[d], below ? "<" : ">",
+                            Offset(*offset));
       }
     }
     text += (text.empty() ? "" : " or ") + (part.empty() ? "true" : part);

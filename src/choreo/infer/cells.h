@@ -8,15 +8,8 @@
 namespace rondo::choreo {
 
 /// The directions of planes: coefficients of x, y and z.
-inline constexpr std::array<std::array<int, 3>, 9> kDirections{{{1, 0, 0},
-                                                                {0, 1, 0},
-                                                                {0, 0, 1},
-                                                                {1, 1, 0},
-                                                                {1, -1, 0},
-                                                                {1, 0, 1},
-                                                                {1, 0, -1},
-                                                                {0, 1, 1},
-                                                                {0, 1, -1}}};
+inline constexpr std::array<std::array<int, 3>, 9> kDirections{
+    {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}}};
 
 /// Some part of what a thread takes up: its extent along each direction, in several states.
 struct Extent {

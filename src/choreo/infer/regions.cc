@@ -74,7 +74,8 @@ class Inferring {
     const size_t threads = graph_[id].threads.size();
     std::mt19937_64 random(1);
     for (Source& s : sources) {
-      if (!Prepare(s, random)) return Fail(id, before, s.thread, fmt::format("no state of {} was found", s.obligation.title));
+      if (!Prepare(s, random))
+        return Fail(id, before, s.thread, fmt::format("no state of {} was found", s.obligation.title));
     }
     bool cut = false;
     stop_ = options_.stop.WithDeadline(base::StopToken::Clock::now() + options_.limits.time);
@@ -110,7 +111,8 @@ class Inferring {
       if (*holds) {
         for (size_t b = 0; b < threads; ++b) {
           if (before[b].region) continue;
-          inference_.found.push_back({before[b].span, graph_.Names(graph_[id].threads[b]), graph_[id].facts[b].region_text});
+          inference_.found.push_back(
+              {before[b].span, graph_.Names(graph_[id].threads[b]), graph_[id].facts[b].region_text});
         }
         return;
       }
@@ -193,8 +195,8 @@ class Inferring {
   void Cut(Source& source) {
     std::vector<robot::Set> slabs;
     for (const robot::Set& set : source.solids) {
-      const auto axis = set.solid.kind == robot::ShapeKind::kBox     ? 4
-                        : set.solid.kind == robot::ShapeKind::kPrism ? 0
+      const auto axis = set.solid.kind == robot::ShapeKind::kBox      ? 4
+                        : set.solid.kind == robot::ShapeKind::kPrism  ? 0
                         : set.solid.kind == robot::ShapeKind::kSphere ? -1
                                                                       : 1;
       if (axis < 0) {
@@ -248,7 +250,8 @@ class Inferring {
         std::vector<TermId> sum;
         for (size_t i = 0; i < 3; ++i) {
           const int c = kDirections[s.direction][i];
-          if (c != 0) sum.push_back(arena_.Mul(arena_.Number(arena_.Real(), Rational(c)), graph_.world->point[i]));
+          if (c != 0)
+            sum.push_back(arena_.Mul(arena_.Number(arena_.Real(), Rational(c)), graph_.world->point[i]));
         }
         // The number that the text has.
         const auto tenths = static_cast<int64_t>(std::llround(s.offset * 10'000));

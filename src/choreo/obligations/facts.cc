@@ -156,7 +156,8 @@ class Flow {
     const TermId clock = graph_.world->clock;
     std::optional<expr::Rational> end;
     for (const Part& p : motion.parts) {
-      if (p.duration.most && p.duration.least == *p.duration.most && !p.duration.interruptible) end = p.duration.most;
+      if (p.duration.most && p.duration.least == *p.duration.most && !p.duration.interruptible)
+        end = p.duration.most;
     }
     Conjunction result;
     for (const TermId part : Conjuncts(arena_, contract.during)) {
@@ -203,7 +204,7 @@ class Flow {
   std::vector<Facts> facts_;
   std::map<NodeId, std::map<Scope, Facts>> arrived_;  // at joins, by thread
   std::set<std::pair<NodeId, Scope>> merged_;         // where only what is common is kept
-  std::set<TermId> outside_;  // what no robot determines
+  std::set<TermId> outside_;                          // what no robot determines
   std::vector<NodeId> todo_;
 };
 

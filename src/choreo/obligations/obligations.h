@@ -47,8 +47,8 @@ struct Obligation {
   /// What else is known, about other variables than `formula`: it matters only if it is contradictory.
   expr::TermId rest;
   std::optional<robot::Meeting> meeting;  ///< what `formula` says, if it is about shapes
-  NodeId node;                            ///< the motion, message or choice that it is about, if it is about one
-  std::vector<size_t> instances;          ///< the motions that it is about
+  NodeId node;                    ///< the motion, message or choice that it is about, if it is about one
+  std::vector<size_t> instances;  ///< the motions that it is about
 };
 
 /// What cannot even be stated: a body or a region that is missing, assumptions that rest on each other.

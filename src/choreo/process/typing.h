@@ -16,8 +16,8 @@ struct Typed {
   std::vector<LocalType> types;
 };
 
-/// What the structure leaves open: that `goal` holds wherever `hypothesis` does, for a robot that is in one of
-/// the nodes `at`.
+/// What the structure leaves open: that `goal` holds wherever `hypothesis` does, for a robot that is in one
+/// of the nodes `at`.
 struct SideCondition {
   diag::Span span;
   std::string what;  ///< "whether the choreography offers this alternative", ...

@@ -262,7 +262,8 @@ class Deciding {
     if (sat == nullptr || !sat->exact) return false;
     near.resize(1);
     for (const auto& [variable, value] : sat->values) {
-      if (value.IsNumber()) near.push_back(arena_.Eq(variable, arena_.Number(arena_.Real(), value.AsNumber())));
+      if (value.IsNumber())
+        near.push_back(arena_.Eq(variable, arena_.Number(arena_.Real(), value.AsNumber())));
     }
     return true;
   }

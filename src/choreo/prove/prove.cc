@@ -86,7 +86,8 @@ class Proving {
     auto& certificates = proof.decision.certificates;
     for (size_t i = 0; i < certificates.size(); ++i) {
       if (!options_.certificates.empty()) {
-        Write(options_.certificates / fmt::format("{:04}-{}-{}.cert", number + 1, KindName(obligation.kind), i + 1),
+        Write(options_.certificates /
+                  fmt::format("{:04}-{}-{}.cert", number + 1, KindName(obligation.kind), i + 1),
               fmt::format("; {}\n{}", obligation.title, certificates[i]));
       }
       diag::SourceSet sources;
@@ -102,8 +103,8 @@ class Proving {
       proof.decision.reason = "its certificate was rejected";
       const std::scoped_lock lock(mutex_);
       proofs_.bug = true;
-      proofs_.problems.push_back(
-          fmt::format("the certificate of \"{}\" was rejected: {}", obligation.title, diagnostics.all()[0].message));
+      proofs_.problems.push_back(fmt::format("the certificate of \"{}\" was rejected: {}", obligation.title,
+                                             diagnostics.all()[0].message));
       return;
     }
     proof.certified = true;

@@ -21,7 +21,7 @@ struct ProveOptions {
   Limits limits;
   unsigned jobs = 0;                                ///< 0: one for each core
   const solve::cache::ProofCache* cache = nullptr;  ///< none: everything anew
-  std::filesystem::path smt_out;  ///< where to write the obligations as SMT-LIB 2; empty: nowhere
+  std::filesystem::path smt_out;       ///< where to write the obligations as SMT-LIB 2; empty: nowhere
   std::filesystem::path certificates;  ///< where to write certificates; empty: nowhere
   base::StopToken stop;
   /// (how many are done, how many there are, what); one call at a time.

@@ -65,7 +65,8 @@ std::string_view HelpFor(ObligationKind kind) {
     case ObligationKind::kRegion:
       return "make the region larger, or say more in `during` of the motion";
     case ObligationKind::kFork:
-      return "regions of threads have no point in common; such as only touch are apart if one of them is open: "
+      return "regions of threads have no point in common; such as only touch are apart if one of them is "
+             "open: "
              "`z < 10 cm` and `z >= 10 cm`";
     case ObligationKind::kAssumption:
       return "another robot of this step has to promise it in `during`, without assumptions of its own";
@@ -195,14 +196,16 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
     if (d.apart > 0) {
       report.Note(fmt::format("where it came closest, the distance is at least {:.3g} m", d.apart));
     } else if (d.apart < 0 && d.apart > -1e9) {
-      report.Note(fmt::format("where it came closest, the shapes overlap by {:.3g} m, as far as can be seen", -d.apart));
+      report.Note(fmt::format("where it came closest, the shapes overlap by {:.3g} m, as far as can be seen",
+                              -d.apart));
     }
     Explain(graph, o, d.witness, report);
     report.Help("give it more time with `--timeout`, or leave more space");
   }
 }
 
-std::vector<std::string> AssumptionsOf(const Graph& graph, const Obligations& obligations, const Proofs& proofs) {
+std::vector<std::string> AssumptionsOf(const Graph& graph, const Obligations& obligations,
+                                       const Proofs& proofs) {
   std::vector<std::string> result;
   std::set<std::string> motions;
   for (const Instance& i : graph.instances)
@@ -219,10 +222,12 @@ std::vector<std::string> AssumptionsOf(const Graph& graph, const Obligations& ob
     }
   }
   for (const auto& v : graph.world->environment) ranges.insert(v.name.text);
-  if (!ranges.empty()) result.push_back(fmt::format("these stay in their ranges: {}", fmt::join(ranges, ", ")));
+  if (!ranges.empty())
+    result.push_back(fmt::format("these stay in their ranges: {}", fmt::join(ranges, ", ")));
   if (graph.initially.valid()) result.push_back("`initially` holds when it begins");
   if (graph.equal_durations)
-    result.push_back("motions of one step that cannot be interrupted end at the same moment (equal_durations)");
+    result.push_back(
+        "motions of one step that cannot be interrupted end at the same moment (equal_durations)");
   for (size_t i = 0; i < obligations.all.size(); ++i) {
     if (obligations.all[i].kind == ObligationKind::kStart &&
         proofs.all[i].decision.verdict != Verdict::kProved)

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "lang/suggest.h"
 #include "expr/defined.h"
+#include "lang/suggest.h"
 #include "robot/model/functions.h"
 
 namespace rondo::robot {

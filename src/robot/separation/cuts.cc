@@ -90,7 +90,8 @@ class Search {
   bool Mix(size_t first, const Separation& best, Follow follow, int64_t parts, Cut& cut) {
     double scale = 0;
     for (size_t i = 0; i < piece_.size(); ++i) {
-      if (i != first) scale = std::max({scale, best.factors[i], best.directions[i].lpNorm<Eigen::Infinity>()});
+      if (i != first)
+        scale = std::max({scale, best.factors[i], best.directions[i].lpNorm<Eigen::Infinity>()});
     }
     if (!(scale > 0) || !std::isfinite(scale)) return false;
     const TermId zero = arena_.Number(arena_.Real(), Rational(0));
@@ -131,7 +132,8 @@ class Search {
     return true;
   }
 
-  std::optional<Direction> Following(size_t first, size_t i, const Vector3d& d, Follow follow, int64_t parts) {
+  std::optional<Direction> Following(size_t first, size_t i, const Vector3d& d, Follow follow,
+                                     int64_t parts) {
     const Set& set = piece_[i];
     const auto rounded = [&](const Vector3d& v) {
       return std::array<Rational, 3>{Rounded(v[0], parts), Rounded(v[1], parts), Rounded(v[2], parts)};
@@ -203,7 +205,8 @@ std::vector<TermId> Cuts::Common() {
       const TermId zero = arena_.Number(arena_.Real(), Rational(0));
       // reach >= sqrt(bound), for reach >= 0 and a bound that may be negative
       const TermId squared = Square(arena_, arena_.Apply(expr::Elementary::kMax, {reach, zero}));
-      conditions.push_back(outside.open ? arena_.Lt(outside.bound, squared) : arena_.Le(outside.bound, squared));
+      conditions.push_back(outside.open ? arena_.Lt(outside.bound, squared)
+                                        : arena_.Le(outside.bound, squared));
     }
   }
   return conditions;

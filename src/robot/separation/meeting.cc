@@ -40,8 +40,8 @@ std::vector<TermId> LocalFormulas(Arena& arena, const Vector& point, const Meeti
                                                              : Contains(arena, own, point));
     for (size_t i = 1; i < meeting.shapes.size(); ++i)
       conjuncts.push_back(Contains(arena, meeting.shapes[i], there));
-    conjuncts.push_back(expr::Substitute(
-        arena, meeting.where, {{point[0], there[0]}, {point[1], there[1]}, {point[2], there[2]}}));
+    conjuncts.push_back(expr::Substitute(arena, meeting.where,
+                                         {{point[0], there[0]}, {point[1], there[1]}, {point[2], there[2]}}));
     if (meeting.beyond) conjuncts.push_back(expr::Complement(arena, Contains(arena, *meeting.beyond, there)));
     all.push_back(arena.And(conjuncts));
   }
@@ -75,7 +75,8 @@ TermId Within(Arena& arena, const Shape& inner, const Shape& outer) {
                      arena.Le(inner.sizes[in + 1], outer.sizes[out + 1]));
   };
   const TermId zero = arena.Number(arena.Real(), Rational(0));
-  if (outer.kind == ShapeKind::kCylinder && (inner.kind == ShapeKind::kPrism || inner.kind == ShapeKind::kBox)) {
+  if (outer.kind == ShapeKind::kCylinder &&
+      (inner.kind == ShapeKind::kPrism || inner.kind == ShapeKind::kBox)) {
     const size_t z = inner.kind == ShapeKind::kBox ? 4 : 0;
     std::vector<std::array<TermId, 2>> corners;
     const auto& s = inner.sizes;
@@ -88,7 +89,8 @@ TermId Within(Arena& arena, const Shape& inner, const Shape& outer) {
     }
     std::vector<TermId> all{slab(z, 1), arena.Le(zero, outer.sizes[0])};
     for (const auto& c : corners) {
-      all.push_back(arena.Le(arena.Add(Square(arena, c[0]), Square(arena, c[1])), Square(arena, outer.sizes[0])));
+      all.push_back(
+          arena.Le(arena.Add(Square(arena, c[0]), Square(arena, c[1])), Square(arena, outer.sizes[0])));
     }
     return arena.And(all);
   }

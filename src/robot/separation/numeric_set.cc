@@ -53,9 +53,7 @@ NumericSet Evaluate(Arena& arena, const Set& set, expr::Numeric& numeric) {
   n.kind = set.kind;
   n.axes = set.axes;
   n.rotation.setIdentity();
-  const auto vector = [&](const Vector& v) {
-    return Vector3d(numeric(v[0]), numeric(v[1]), numeric(v[2]));
-  };
+  const auto vector = [&](const Vector& v) { return Vector3d(numeric(v[0]), numeric(v[1]), numeric(v[2])); };
   switch (set.kind) {
     case SetKind::kSolid: {
       n.shape = set.solid.kind;

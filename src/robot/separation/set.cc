@@ -208,7 +208,8 @@ class Cutter {
 
   // A prism by its faces alone, bottom and top among them.
   Piece SidesOf(Shape shape) {
-    const TermId zero = arena_.Number(arena_.Real(), Rational(0)), one = arena_.Number(arena_.Real(), Rational(1));
+    const TermId zero = arena_.Number(arena_.Real(), Rational(0)),
+                 one = arena_.Number(arena_.Real(), Rational(1));
     shape.faces.push_back({{zero, zero, arena_.Neg(one)}, arena_.Neg(shape.sizes[0]), one});
     shape.faces.push_back({{zero, zero, one}, shape.sizes[1], one});
     return FacesOf(shape);
@@ -319,9 +320,8 @@ std::optional<std::vector<std::array<TermId, 2>>> Corners(Arena& arena, const Sh
     const Face& a = prism.faces[i];
     const Face& b = prism.faces[(i + 1) % n];
     const TermId determinant = cross(a.normal[0], a.normal[1], b.normal[0], b.normal[1]);
-    corners.push_back(
-        {arena.Divide(cross(a.offset, a.normal[1], b.offset, b.normal[1]), determinant),
-         arena.Divide(cross(a.normal[0], a.offset, b.normal[0], b.offset), determinant)});
+    corners.push_back({arena.Divide(cross(a.offset, a.normal[1], b.offset, b.normal[1]), determinant),
+                       arena.Divide(cross(a.normal[0], a.offset, b.normal[0], b.offset), determinant)});
   }
   return corners;
 }

@@ -19,11 +19,11 @@ enum class SetKind : uint8_t {
 struct Set {
   SetKind kind = SetKind::kSolid;
   Shape solid;
-  Vector normal;                            ///< kBelow
-  TermId bound;                             ///< kBelow, kBall, kOutside
-  bool open = false;                        ///< without its boundary
-  Vector centre;                            ///< kBall, kOutside
-  std::array<bool, 3> axes = {1, 1, 1};     ///< kBall, kOutside
+  Vector normal;                         ///< kBelow
+  TermId bound;                          ///< kBelow, kBall, kOutside
+  bool open = false;                     ///< without its boundary
+  Vector centre;                         ///< kBall, kOutside
+  std::array<bool, 3> axes = {1, 1, 1};  ///< kBall, kOutside
 };
 
 /// Points that are in all of these sets.

@@ -110,7 +110,8 @@ std::optional<Shape> Around(Arena& arena, const Shape& s) {
   const auto middle = [&](size_t low) { return arena.Mul(half, arena.Add(s.sizes[low], s.sizes[low + 1])); };
   const auto side = [&](size_t low) { return arena.Mul(half, arena.Sub(s.sizes[low + 1], s.sizes[low])); };
   cylinder.frame.origin = ToWorld(arena, s.frame, {middle(0), middle(2), b.Zero()});
-  cylinder.sizes = {b.Root(arena.Add(Square(arena, side(0)), Square(arena, side(2)))), s.sizes[4], s.sizes[5]};
+  cylinder.sizes = {b.Root(arena.Add(Square(arena, side(0)), Square(arena, side(2)))), s.sizes[4],
+                    s.sizes[5]};
   return cylinder;
 }
 
@@ -141,8 +142,10 @@ TermId Farthest(Arena& arena, const Shape& s, const Vector& centre, const std::a
           s.sizes[0]);
     case ShapeKind::kBox: {
       using Corner = std::array<TermId, 2>;
-      corners(std::vector<Corner>{{s.sizes[0], s.sizes[2]}, {s.sizes[0], s.sizes[3]},
-                                  {s.sizes[1], s.sizes[2]}, {s.sizes[1], s.sizes[3]}},
+      corners(std::vector<Corner>{{s.sizes[0], s.sizes[2]},
+                                  {s.sizes[0], s.sizes[3]},
+                                  {s.sizes[1], s.sizes[2]},
+                                  {s.sizes[1], s.sizes[3]}},
               s.sizes[4], s.sizes[5]);
       return b.Max(ends);
     }

@@ -99,8 +99,7 @@ class Decision {
       box_.emplace(tape.variables[v].term, range);
       checker.Widen(tape.variables[v].term, range);
     }
-    for (const auto& [variable, term] : prepared.definitions)
-      box_.emplace(variable, checker.Enclosure(term));
+    for (const auto& [variable, term] : prepared.definitions) box_.emplace(variable, checker.Enclosure(term));
   }
 
   void WriteSearch(const Prepared& prepared, const Tape& tape, const std::vector<TreeNode>& tree) {

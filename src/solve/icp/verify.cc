@@ -1,7 +1,6 @@
 #include "solve/icp/verify.h"
 
 #include <algorithm>
-
 #include <cmath>
 
 namespace rondo::solve::icp {

@@ -1,0 +1,152 @@
+#include "choreo/obligations/statements.h"
+
+#include <algorithm>
+
+#include "choreo/obligations/facts.h"
+#include "expr/defined.h"
+#include "expr/substitute.h"
+
+namespace rondo::choreo {
+
+using expr::Rational;
+using expr::TermId;
+
+Claim Noun(const std::string& title) { return {title, title + " may not hold"}; }
+Claim State(const std::string& state) { return {"a state " + state, "there is no state " + state}; }
+
+Statements::Statements(const Graph& graph, expr::Arena& arena) : graph_(graph), arena_(arena) {
+  const auto range = [&](const robot::Variable& v) {
+    std::vector<TermId>& bounds = ranges_[v.term];
+    if (v.least) bounds.push_back(arena_.Le(*v.least, v.term));
+    if (v.most) bounds.push_back(arena_.Le(v.term, *v.most));
+  };
+  for (const robot::Body& body : graph_.world->bodies) {
+    std::ranges::for_each(body.states, range);
+    std::ranges::for_each(body.inputs, range);
+  }
+  std::ranges::for_each(graph_.world->environment, range);
+}
+
+void Statements::Unsat(ObligationKind kind, diag::Span span, const Claim& claim,
+                       const std::vector<TermId>& formulas) {
+  std::vector<TermId> others(formulas.begin(), formulas.end() - 1);
+  const TermId related = Related({formulas.back()}, others);
+  Add({kind,
+       span,
+       claim.title,
+       claim.failure,
+       false,
+       arena_.And(related, formulas.back()),
+       arena_.And(others),
+       {},
+       {},
+       {}});
+}
+
+void Statements::Apart(ObligationKind kind, diag::Span span, const Claim& claim, robot::Meeting meeting) {
+  std::vector<TermId> others{meeting.configuration};
+  meeting.configuration = arena_.True();
+  meeting.configuration = Related({robot::Formula(arena_, graph_.world->point, meeting)}, others);
+  const TermId formula = robot::Formula(arena_, graph_.world->point, meeting);
+  Add({kind,
+       span,
+       claim.title,
+       claim.failure,
+       false,
+       formula,
+       arena_.And(others),
+       std::move(meeting),
+       {},
+       {}});
+}
+
+void Statements::Sat(diag::Span span, const Claim& claim, std::vector<TermId> formulas, ObligationKind kind) {
+  std::vector<TermId> others;
+  formulas.push_back(Related(formulas, others));
+  Add({kind, span, claim.title, claim.failure, true, arena_.And(formulas), arena_.True(), {}, {}, {}});
+}
+
+void Statements::Lacks(diag::Span span, std::string what, bool region) {
+  const bool said = std::ranges::any_of(result_.missing, [&](const Missing& m) { return m.what == what; });
+  if (!said) result_.missing.push_back({span, std::move(what), region});
+}
+
+// What is plain is not stated. Equal formulas are one only if what else is known is the same: a contradiction
+// there would prove the one and not the other.
+void Statements::Add(Obligation obligation) {
+  obligation.node = node;
+  obligation.instances = instances;
+  if (obligation.formula == arena_.Constant(obligation.satisfiable)) return;
+  if (!known_.emplace(obligation.formula, obligation.rest).second) return;
+  result_.all.push_back(std::move(obligation));
+}
+
+const std::set<TermId>& Statements::VariablesOf(TermId formula) {
+  const auto it = variables_.find(formula);
+  if (it != variables_.end()) return it->second;
+  return variables_.emplace(formula, robot::VariablesOf(arena_, {formula})).first->second;
+}
+
+TermId Statements::Related(const std::vector<TermId>& roots, std::vector<TermId>& formulas) {
+  std::vector<TermId> open;
+  for (const TermId f : formulas) {
+    const Conjunction parts = Conjuncts(arena_, f);
+    open.insert(open.end(), parts.begin(), parts.end());
+  }
+  std::set<TermId> variables;
+  for (const TermId root : roots) variables.insert(VariablesOf(root).begin(), VariablesOf(root).end());
+  std::vector<TermId> related;
+  for (bool grown = true; grown;) {
+    grown = false;
+    std::erase_if(open, [&](TermId part) {
+      const std::set<TermId>& own = VariablesOf(part);
+      if (!own.empty() && std::ranges::none_of(own, [&](TermId v) { return variables.contains(v); }))
+        return false;
+      related.push_back(part);
+      variables.insert(own.begin(), own.end());
+      return grown = true;
+    });
+  }
+  formulas = std::move(open);
+  std::ranges::sort(related);
+  for (const TermId v : variables) {
+    const auto it = ranges_.find(v);
+    if (it != ranges_.end()) related.insert(related.end(), it->second.begin(), it->second.end());
+  }
+  return arena_.And(related);
+}
+
+TermId Statements::Fails(TermId formula) const { return expr::Complement(arena_, formula); }
+
+TermId Statements::NoneOf(const std::vector<TermId>& formulas) const {
+  std::vector<TermId> all;
+  for (const TermId f : formulas) all.push_back(Fails(f));
+  return arena_.And(all);
+}
+
+TermId Statements::Number(const Rational& value) const { return arena_.Number(arena_.Real(), value); }
+
+TermId Statements::AtClock(TermId formula, const Rational& seconds) const {
+  return expr::Substitute(arena_, formula, {{graph_.world->clock, Number(seconds)}});
+}
+
+TermId Statements::Elapsed(const Duration& d) const {
+  const TermId clock = graph_.world->clock;
+  const TermId from = arena_.Le(Number(0), clock);
+  return d.most ? arena_.And(from, arena_.Le(clock, Number(*d.most))) : from;
+}
+
+TermId Statements::Ended(const Duration& d) const {
+  return arena_.And(Elapsed(d), arena_.Le(Number(d.least), graph_.world->clock));
+}
+
+std::vector<Rational> Statements::Instants(const Rational& least, TermId during) const {
+  std::vector<Rational> instants;
+  if (!robot::VariablesOf(arena_, {during}).contains(graph_.world->clock)) return instants;
+  constexpr int kInstants = 4;
+  for (int k = 0; k <= kInstants && !(least.IsZero() && k > 0); ++k)
+    instants.push_back(least * Rational(k) / Rational(kInstants));
+  return instants;
+}
+
+}  // namespace rondo::choreo

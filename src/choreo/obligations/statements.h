@@ -1,0 +1,94 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <unordered_map>
+
+#include "choreo/obligations/obligations.h"
+
+namespace rondo::choreo {
+
+/// In words: what holds, and what is the matter if it does not.
+struct Claim {
+  std::string title, failure;
+};
+
+/// "X" and "X may not hold"
+Claim Noun(const std::string& title);
+/// "a state ..." and "there is no state ..."
+Claim State(const std::string& state);
+
+/// Builds formulas about one choreography, and states obligations: each with those formulas that have to do
+/// with it, equal ones once.
+class Statements {
+ public:
+  Statements(const Graph& graph, expr::Arena& arena);
+
+  // -- stating; what follows is about this node and these motions
+
+  NodeId node;
+  std::vector<size_t> instances;
+
+  /// The last formula has no solution together with the others. Those that share no variable with it,
+  /// directly or over others, become the `rest`.
+  void Unsat(ObligationKind kind, diag::Span span, const Claim& claim,
+             const std::vector<expr::TermId>& formulas);
+  /// The meeting is impossible.
+  void Apart(ObligationKind kind, diag::Span span, const Claim& claim, robot::Meeting meeting);
+  /// The formulas have a common solution.
+  void Sat(diag::Span span, const Claim& claim, std::vector<expr::TermId> formulas,
+           ObligationKind kind = ObligationKind::kContract);
+  void Lacks(diag::Span span, std::string what, bool region = false);
+  Obligations Take() { return std::move(result_); }
+
+  // -- formulas
+
+  const Graph& graph() const { return graph_; }
+  expr::Arena& arena() const { return arena_; }
+  /// Takes out of `formulas` what is about the variables of `roots`, or about variables that such formulas
+  /// mention, and so on; with the ranges of all these variables.
+  expr::TermId Related(const std::vector<expr::TermId>& roots, std::vector<expr::TermId>& formulas);
+  /// Where a formula is not true; where none of several is.
+  expr::TermId Fails(expr::TermId formula) const;
+  expr::TermId NoneOf(const std::vector<expr::TermId>& formulas) const;
+  expr::TermId Number(const expr::Rational& value) const;
+  expr::TermId AtClock(expr::TermId formula, const expr::Rational& seconds) const;
+  /// 0 <= clock <= most; and least <= clock
+  expr::TermId Elapsed(const Duration& d) const;
+  expr::TermId Ended(const Duration& d) const;
+  /// Some moments up to `least`, if the formula depends on the clock: at each of them there has to be a
+  /// state.
+  std::vector<expr::Rational> Instants(const expr::Rational& least, expr::TermId during) const;
+  const std::set<expr::TermId>& VariablesOf(expr::TermId formula);
+
+ private:
+  void Add(Obligation obligation);
+
+  const Graph& graph_;
+  expr::Arena& arena_;
+  std::map<expr::TermId, std::vector<expr::TermId>> ranges_;  // by variable
+  std::set<std::pair<expr::TermId, expr::TermId>> known_;     // formulas with their `rest`
+  std::unordered_map<expr::TermId, std::set<expr::TermId>> variables_;
+  Obligations result_;
+};
+
+/// What is stated of one motion alone: that its contract can be kept.
+void StateContract(Statements& statements, const Instance& instance);
+
+/// That something can be sent as a message promises, whenever `known` holds: receivers rely on it.
+void StatePromise(Statements& statements, const Node& message, std::vector<expr::TermId> known);
+
+/// One of several that have to keep apart: a shape, or a region.
+struct Member {
+  std::string name;
+  const robot::Shape* shape = nullptr;
+  expr::TermId region;  ///< without a shape
+  std::vector<size_t> instances;
+};
+
+/// No two members have a common point while `known` holds. Of many, each is shown to lie between two planes,
+/// and only those whose slabs meet are compared: about linear in their number, if they are spread out.
+void StateApart(Statements& statements, ObligationKind kind, diag::Span span,
+                const std::vector<Member>& members, const std::vector<expr::TermId>& known);
+
+}  // namespace rondo::choreo
