@@ -48,6 +48,7 @@ Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop
   ::z3::params parameters(context);
   parameters.set("timeout", static_cast<unsigned>(std::max<int64_t>(1, budget.time.count())));
   parameters.set("core.minimize", false);  // a third of the time for little
+  parameters.set("ctrl_c", false);  // the signal handler of Z3 is not made for several threads; ours is
   solver.set(parameters);
   const base::StopToken limited = stop.WithDeadline(base::StopToken::Clock::now() + budget.time);
   Translator translate(*query.arena, context);
