@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 
@@ -44,7 +45,11 @@ int Main(int argc, char** argv) {
     PrintFailure(fmt::format("bug: {}", error.what()));
     return kBug;
   }
-  std::fflush(stdout);
+  // A reader that went away is no error; a full disk is.
+  if ((std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && errno != EPIPE && status == kEstablished) {
+    PrintFailure("cannot write the output");
+    return kRejected;
+  }
   return status;
 }
 

@@ -101,10 +101,6 @@ void ForRequired(const MotionReport& report, Visit visit) {
   }
 }
 
-bool IsIncomplete(const MotionReport& report) {
-  return !report.obligations.missing.empty() || !report.regions.failed.empty();
-}
-
 Counts Total(const MotionReport& report) {
   Counts total;
   ForRequired(report, [&](const auto&, const Proof& p) { total.Add(p); });
@@ -116,8 +112,8 @@ Counts Total(const MotionReport& report) {
 int StatusOf(const MotionReport& report) {
   const Counts total = Total(report);
   if (report.proofs.bug) return kBug;
-  if (total.fails > 0 || IsIncomplete(report)) return kRejected;
-  if (total.open > 0) return kUndecided;
+  if (total.fails > 0 || !report.obligations.missing.empty()) return kRejected;
+  if (total.open > 0 || !report.regions.failed.empty()) return kUndecided;
   return report.proofs.problems.empty() ? kEstablished : kRejected;
 }
 
@@ -166,12 +162,14 @@ std::string MotionSummary(const MotionReport& report, const diag::SourceSet& sou
   for (const Proof& p : proofs) uncertified += p.decision.verdict == Verdict::kProved && !p.certified ? 1 : 0;
   const std::string& name = report.graph->source->name.text;
   std::string text;
-  if (IsIncomplete(report)) {
+  if (!report.obligations.missing.empty()) {
     text = fmt::format("not proved: {}: something is missing\n", name);
   } else if (total.fails > 0) {
     text = fmt::format("not proved: {}: {} of {} obligations fail{}\n", name, total.fails,
                        total.fails + total.holds + total.open,
                        total.open > 0 ? fmt::format(", {} are not decided", total.open) : "");
+  } else if (!report.regions.failed.empty()) {
+    text = fmt::format("unknown: {}: threads without regions\n", name);
   } else if (total.open > 0) {
     text = fmt::format("unknown: {}: {} of {} obligations are not decided\n", name, total.open,
                        total.holds + total.open);
@@ -221,6 +219,7 @@ nlohmann::json ToJson(const MotionReport& report) {
           {"status", StatusOf(report)},
           {"obligations", list},
           {"missing", missing},
+          {"problems", report.proofs.problems},
           {"regions", regions},
           {"assumed", choreo::AssumptionsOf(*report.graph, report.obligations, report.proofs)}};
 }

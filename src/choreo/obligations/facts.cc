@@ -65,7 +65,7 @@ class Flow {
   }
 
   std::vector<Facts> Run() {
-    Reach(graph_.start, {Conjuncts(arena_, graph_.initially)});
+    Reach(graph_.start, {Conjuncts(arena_, graph_.initially)}, graph_[graph_.start].scope);
     while (!todo_.empty()) {
       const NodeId id = todo_.back();
       todo_.pop_back();
@@ -75,12 +75,13 @@ class Flow {
   }
 
  private:
-  // Adds ways by which a node is reached, from a node with this scope.
-  void Reach(NodeId id, const Facts& ways, const Scope& from = {}) {
+  // Adds ways by which a node is reached, from a node with this scope. What is about robots of other threads
+  // was true for a moment: they go on meanwhile.
+  void Reach(NodeId id, const Facts& ways, const Scope& from) {
     const bool join = graph_[id].kind == NodeKind::kJoin;
     Facts& known = join ? arrived_[id][from] : facts_[id.index()];
     const Facts before = known;
-    known.insert(ways.begin(), ways.end());
+    known.merge(Without(arena_, ways, StatesOfOthers(graph_, from)));
     if (known.size() > kMostWays || merged_.contains({id, from})) {
       // What all ways have in common.
       merged_.insert({id, from});
@@ -100,12 +101,12 @@ class Flow {
     const Facts& facts = facts_[id.index()];
     switch (n.kind) {
       case NodeKind::kMotion:
-        return Reach(n.next[0], After(n, facts), n.scope);
+        return Reach(n.next[0], After(id, n, facts), n.scope);
       case NodeKind::kChoice:
         for (size_t b = 0; b < n.next.size(); ++b) Reach(n.next[b], With(facts, n.guard_terms[b]), n.scope);
         return;
       case NodeKind::kFork:
-        for (size_t b = 0; b < n.next.size(); ++b) Reach(n.next[b], Own(facts, n.threads[b]), n.threads[b]);
+        for (size_t b = 0; b < n.next.size(); ++b) Reach(n.next[b], facts, n.threads[b]);
         return;
       case NodeKind::kMessage:
         return Reach(n.next[0], Told(n, facts), n.scope);
@@ -127,14 +128,24 @@ class Flow {
     return result;
   }
 
-  Facts After(const Node& motion, const Facts& facts) const {
+  Facts After(NodeId id, const Node& motion, const Facts& facts) {
+    const TermId end = EndOf(id, motion);
+    Conjunction news;
+    if (!arena_.IsNumber(end)) {
+      const Duration step = StepOf(motion);
+      news.insert(arena_.Le(arena_.Number(arena_.Real(), step.least), end));
+      if (step.most) news.insert(arena_.Le(end, arena_.Number(arena_.Real(), *step.most)));
+    }
+    for (const Part& p : motion.parts) {
+      const robot::Contract& c = graph_.instances[p.instance].contract;
+      news.merge(Conjuncts(arena_, c.post));
+      news.merge(AtTheEnd(c, end));
+    }
+    std::set<TermId> old = Changing(graph_, motion);
+    old.insert(end);  // of an earlier time
     Facts result;
-    for (Conjunction way : Without(arena_, facts, Changing(graph_, motion))) {
-      for (const Part& p : motion.parts) {
-        const robot::Contract& c = graph_.instances[p.instance].contract;
-        way.merge(Conjuncts(arena_, c.post));
-        way.merge(AtTheEnd(motion, c));
-      }
+    for (Conjunction way : Without(arena_, facts, old)) {
+      way.insert(news.begin(), news.end());
       result.insert(std::move(way));
     }
     return result;
@@ -150,31 +161,31 @@ class Flow {
     return With(Without(arena_, facts, carried), message.refinement);
   }
 
-  // What `during` says of the last moment: all that does not depend on the clock, and the rest if the moment
-  // is known. Inputs and what others do may change as soon as it is over.
-  Conjunction AtTheEnd(const Node& motion, const robot::Contract& contract) const {
-    const TermId clock = graph_.world->clock;
-    std::optional<expr::Rational> end;
-    for (const Part& p : motion.parts) {
-      if (p.duration.most && p.duration.least == *p.duration.most && !p.duration.interruptible)
-        end = p.duration.most;
+  // When a step ends: a number, if all agree on it; or some moment, one for each step.
+  TermId EndOf(NodeId id, const Node& motion) {
+    const Duration step = StepOf(motion);
+    if (step.most && step.least == *step.most) return arena_.Number(arena_.Real(), step.least);
+    const auto it = ends_.find(id);
+    if (it != ends_.end()) return it->second;
+    return ends_.emplace(id, arena_.FreshConstant("end", arena_.Real())).first->second;
+  }
+
+  // What `during` says of the last moment. Inputs may change as soon as it is over.
+  Conjunction AtTheEnd(const robot::Contract& contract, TermId end) const {
+    // States that `post` gives in full: the rest would only repeat it.
+    std::set<TermId> given{graph_.world->clock};
+    for (const TermId part : Conjuncts(arena_, contract.post)) {
+      const auto variables = robot::VariablesOf(arena_, {part});
+      if (arena_.op(part) == expr::Op::kEq && variables.size() == 1) given.insert(*variables.begin());
     }
     Conjunction result;
     for (const TermId part : Conjuncts(arena_, contract.during)) {
-      const bool timed = robot::VariablesOf(arena_, {part}).contains(clock);
-      if (timed && !end) continue;
-      const TermId then =
-          timed ? expr::Substitute(arena_, part, {{clock, arena_.Number(arena_.Real(), *end)}}) : part;
-      const auto variables = robot::VariablesOf(arena_, {then});
-      if (std::ranges::none_of(variables, [&](TermId v) { return outside_.contains(v); }))
-        result.merge(Conjuncts(arena_, then));
+      const auto variables = robot::VariablesOf(arena_, {part});
+      if (std::ranges::any_of(variables, [&](TermId v) { return outside_.contains(v); })) continue;
+      if (std::ranges::includes(given, variables)) continue;
+      result.merge(Conjuncts(arena_, expr::Substitute(arena_, part, {{graph_.world->clock, end}})));
     }
     return result;
-  }
-
-  // What is about robots of the thread alone: others go their own way meanwhile.
-  Facts Own(const Facts& facts, const Scope& thread) const {
-    return Without(arena_, facts, StatesOfOthers(graph_, thread));
   }
 
   // The ways of all threads, combined, once each has arrived.
@@ -205,10 +216,21 @@ class Flow {
   std::map<NodeId, std::map<Scope, Facts>> arrived_;  // at joins, by thread
   std::set<std::pair<NodeId, Scope>> merged_;         // where only what is common is kept
   std::set<TermId> outside_;                          // what no robot determines
+  std::map<NodeId, TermId> ends_;                     // when steps end, where that is not fixed
   std::vector<NodeId> todo_;
 };
 
 }  // namespace
+
+Duration StepOf(const Node& motion) {
+  Duration step{expr::Rational(0), std::nullopt, true};
+  for (const Part& p : motion.parts) {
+    if (step.least < p.duration.least) step.least = p.duration.least;
+    if (p.duration.most && (!step.most || *p.duration.most < *step.most)) step.most = p.duration.most;
+    step.interruptible = step.interruptible && p.duration.interruptible;
+  }
+  return step;
+}
 
 Conjunction Conjuncts(const Arena& arena, TermId formula) {
   if (formula == arena.True()) return {};

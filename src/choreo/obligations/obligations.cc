@@ -25,6 +25,29 @@ struct Context {
   std::optional<TermId> region;
 };
 
+// The formula with all comparisons relaxed by a millionth: what differs by rounding only is near enough.
+TermId Nearly(Arena& arena, TermId formula) {
+  const TermId slack = arena.Number(arena.Real(), Rational(1) / Rational(1'000'000));
+  const std::vector<TermId> args(arena.args(formula).begin(), arena.args(formula).end());
+  switch (arena.op(formula)) {
+    case expr::Op::kAnd:
+    case expr::Op::kOr: {
+      std::vector<TermId> parts;
+      for (const TermId a : args) parts.push_back(Nearly(arena, a));
+      return arena.op(formula) == expr::Op::kAnd ? arena.And(parts) : arena.Or(parts);
+    }
+    case expr::Op::kEq:
+      if (arena.sort_of(args[0]) == arena.Bool()) return formula;
+      return arena.And(arena.Le(args[0], arena.Add(args[1], slack)),
+                       arena.Le(args[1], arena.Add(args[0], slack)));
+    case expr::Op::kLe:
+    case expr::Op::kLt:
+      return arena.Le(args[0], arena.Add(args[1], slack));
+    default:
+      return formula;
+  }
+}
+
 class Builder {
  public:
   Builder(const Graph& graph, Arena& arena)
@@ -158,15 +181,6 @@ class Builder {
       s_.Unsat(ObligationKind::kMessage, n.span, Noun(fmt::format("the guard of `{}`", n.label)), formulas);
   }
 
-  // How long a step takes at most: no longer than any of its motions.
-  static Duration StepOf(const Node& n) {
-    Duration step{Rational(0), std::nullopt, true};
-    for (const Part& p : n.parts) {
-      if (p.duration.most && (!step.most || *p.duration.most < *step.most)) step.most = p.duration.most;
-    }
-    return step;
-  }
-
   void Motion(NodeId id, const Node& n, const Context& context) {
     std::vector<TermId> during = context.assumptions;
     for (const Part& p : n.parts) during.push_back(graph_.instances[p.instance].contract.during);
@@ -174,14 +188,10 @@ class Builder {
     // What nothing changes stays as it was.
     const TermId kept = Kept(graph_, n, facts_[id.index()], arena_);
     during.push_back(kept);
-    Rational least(0);
     std::vector<TermId> promised;
-    for (const Part& p : n.parts) {
-      promised.push_back(graph_.instances[p.instance].contract.during);
-      if (!p.duration.interruptible && least < p.duration.least) least = p.duration.least;
-    }
+    for (const Part& p : n.parts) promised.push_back(graph_.instances[p.instance].contract.during);
     const TermId together = arena_.And(during);
-    for (const Rational& t : s_.Instants(least, arena_.And(promised))) {
+    for (const Rational& t : s_.Instants(StepOf(n).least, arena_.And(promised))) {
       s_.Sat(n.span, State(fmt::format("{:.3g} s after {} has begun", t.ToDouble(), TextOf(n))),
              {s_.AtClock(together, t)});
     }
@@ -228,8 +238,10 @@ class Builder {
     formulas.push_back(s_.Fails(c.pre));
     if (c.pre != arena_.True())
       s_.Unsat(ObligationKind::kPrecondition, p.span, Noun("the precondition of " + who), formulas);
-    // Its `during`, as it begins.
+    // Its `during`, as it begins: at least nearly so, or nobody could keep the contract from here on.
     const TermId begins = s_.AtClock(c.during, 0);
+    formulas.back() = arena_.And(c.pre, Nearly(arena_, begins));
+    if (begins != arena_.True()) s_.Sat(p.span, State("in which " + who + " begins here"), formulas);
     formulas.back() = s_.Fails(begins);
     if (begins != arena_.True())
       s_.Unsat(ObligationKind::kStart, p.span,

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <mutex>
+#include <set>
 
 #include "base/file.h"
 #include "base/parallel.h"
@@ -41,10 +42,28 @@ class Proving {
       proofs_.all[i] = std::move(proof);
       if (options_.progress) options_.progress(++done, total, obligation.title);
     });
+    SkipWhatNeverHappens();
     return std::move(proofs_);
   }
 
  private:
+  // Of a step that never begins nothing else has to be possible: that it never begins is said anyway.
+  void SkipWhatNeverHappens() {
+    std::set<NodeId> never;
+    for (size_t i = 0; i < proofs_.all.size(); ++i) {
+      if (obligations_.all[i].kind == ObligationKind::kReached &&
+          proofs_.all[i].decision.verdict == Verdict::kRefuted)
+        never.insert(obligations_.all[i].node);
+    }
+    for (size_t i = 0; i < proofs_.all.size(); ++i) {
+      const Obligation& o = obligations_.all[i];
+      Decision& d = proofs_.all[i].decision;
+      if (o.satisfiable && o.kind != ObligationKind::kReached && never.contains(o.node) &&
+          d.verdict == Verdict::kRefuted)
+        d.verdict = Verdict::kProved;
+    }
+  }
+
   std::string QuestionOf(const Obligation& obligation) const {
     solve::Query query;
     query.arena = &arena_;
@@ -71,17 +90,32 @@ class Proving {
       proof.certified = certify;
       return proof;
     }
-    proof.decision =
-        Decide(obligation, *graph_.world, arena_, solve::icp::Options{}, options_.limits, options_.stop);
+    // What cannot be certified is tried again without rewriting over rotated frames: a plainer proof.
+    std::string rejected;
+    for (const bool lemmas : {true, false}) {
+      solve::icp::Options engine;
+      engine.lemmas = lemmas;
+      proof.decision = Decide(obligation, *graph_.world, arena_, engine, options_.limits, options_.stop);
+      if (proof.decision.verdict != Verdict::kProved || !certify) break;
+      rejected = Certify(proof, obligation, number);
+      if (rejected.empty()) break;
+    }
+    if (!rejected.empty()) {
+      proof.decision.verdict = Verdict::kUnknown;
+      proof.decision.reason = "its certificate was rejected";
+      const std::scoped_lock lock(mutex_);
+      proofs_.bug = true;
+      proofs_.problems.push_back(
+          fmt::format("the certificate of \"{}\" was rejected: {}", obligation.title, rejected));
+    }
     if (proof.decision.verdict != Verdict::kProved) return proof;
-    if (certify) Certify(proof, obligation, number);
     if (options_.cache != nullptr && proof.decision.verdict == Verdict::kProved && proof.certified == certify)
       options_.cache->Store(key, {std::string(kEngine), {}});
     return proof;
   }
 
-  // A proof that the checker does not accept is none.
-  void Certify(Proof& proof, const Obligation& obligation, size_t number) {
+  // A proof that the checker does not accept is none. Why it does not; empty if it does, or had no time.
+  std::string Certify(Proof& proof, const Obligation& obligation, size_t number) {
     const base::StopToken stop = options_.stop.WithDeadline(Clock::now() + options_.limits.time);
     auto& certificates = proof.decision.certificates;
     for (size_t i = 0; i < certificates.size(); ++i) {
@@ -97,19 +131,13 @@ class Proving {
                                       diagnostics);
       solve::certify::Tally tally;
       if (!diagnostics.has_errors()) tally = solve::certify::Check(certificate, diagnostics, stop);
-      if (tally.stopped) return;  // proved, and not certified
-      if (!diagnostics.has_errors()) continue;
-      proof.decision.verdict = Verdict::kUnknown;
-      proof.decision.reason = "its certificate was rejected";
-      const std::scoped_lock lock(mutex_);
-      proofs_.bug = true;
-      proofs_.problems.push_back(fmt::format("the certificate of \"{}\" was rejected: {}", obligation.title,
-                                             diagnostics.all()[0].message));
-      return;
+      if (tally.stopped) return "";  // proved, and not certified
+      if (diagnostics.has_errors()) return diagnostics.all()[0].message;
     }
     proof.certified = true;
     certificates.clear();  // they are large
     certificates.shrink_to_fit();
+    return "";
   }
 
   void Write(const std::filesystem::path& path, const std::string& text) {

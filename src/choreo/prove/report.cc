@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ranges>
 #include <set>
 
 #include "robot/contact/contact.h"
@@ -147,7 +148,8 @@ std::string PlaceOf(const Graph& graph, const Witness& witness) {
 }
 
 void ConfirmWitnesses(const Obligations& obligations, expr::Arena& arena, Proofs& proofs) {
-  constexpr double kTolerance = 1e-6;  // metres, or whatever a formula compares
+  constexpr double kTolerance = 1e-6;  // whatever a formula compares
+  constexpr double kContact = 1e-4;    // metres: FCL is not exact
   for (size_t i = 0; i < obligations.all.size(); ++i) {
     const Obligation& o = obligations.all[i];
     Proof& proof = proofs.all[i];
@@ -168,7 +170,7 @@ void ConfirmWitnesses(const Obligations& obligations, expr::Arena& arena, Proofs
     const auto contact =
         robot::FindContact(arena, o.meeting->shapes[0], o.meeting->shapes[1], witness.values);
     if (!contact) continue;
-    proof.confirmed = contact->touches || contact->distance <= kTolerance;
+    proof.confirmed = contact->touches || contact->distance <= kContact;
     if (!proof.confirmed) deny(fmt::format("FCL sees a distance of {:.3g} m", contact->distance));
   }
 }
@@ -182,6 +184,15 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
     const Obligation& o = obligations.all[i];
     const Decision& d = proofs.all[i].decision;
     if (d.verdict == Verdict::kProved || o.kind == ObligationKind::kStart) continue;
+    // A motion that begins where it must not often cannot begin there either: that is one mistake.
+    const auto follows = [&](size_t j) {
+      const Obligation& p = obligations.all[j];
+      return p.kind == ObligationKind::kPrecondition && p.node == o.node && p.instances == o.instances &&
+             proofs.all[j].decision.verdict == Verdict::kRefuted;
+    };
+    if (o.kind == ObligationKind::kContract && o.node.valid() &&
+        std::ranges::any_of(std::views::iota(size_t{0}, obligations.all.size()), follows))
+      continue;
     if (d.verdict == Verdict::kRefuted) {
       diag::Diagnostic& report = diagnostics.Report(KindOf(o.kind), o.span, o.failure);
       Explain(graph, o, d.witness, report);

@@ -96,11 +96,13 @@ std::optional<Contact> FindContact(Arena& arena, const Shape& a, const Shape& b,
   std::vector<Object> first, second;
   if (!scene.Add(a, first) || !scene.Add(b, second)) return std::nullopt;
   Contact contact{false, std::numeric_limits<double>::infinity()};
+  const auto is_plane = [](const Object& o) { return o.getNodeType() == fcl::GEOM_HALFSPACE; };
   for (const Object& x : first) {
     for (const Object& y : second) {
       fcl::CollisionResultd collision;
       fcl::collide(&x, &y, fcl::CollisionRequestd(), collision);
       if (collision.isCollision()) return Contact{true, 0};
+      if (is_plane(x) || is_plane(y)) return std::nullopt;  // FCL has no distances from half-spaces
       fcl::DistanceRequestd request;
       fcl::DistanceResultd result;
       const double distance = fcl::distance(&x, &y, request, result);

@@ -14,7 +14,8 @@ struct Contact {
 };
 
 /// Whether two shapes touch in a state, as the Flexible Collision Library sees it, in double precision.
-/// nullopt if FCL has no such shapes: intersections and half-spheres.
+/// nullopt if FCL has no such shapes: intersections and half-spheres, nor
+/// half-spaces that do not touch.
 std::optional<Contact> FindContact(Arena& arena, const Shape& a, const Shape& b,
                                    const expr::Numeric::Point& state);
 

@@ -22,6 +22,14 @@ std::optional<Normal::Key> Normal::KeyOf(Elementary function, PolyId argument) {
   if (function != Elementary::kSqrt) return Key{function, argument};
   // Where a root is defined does not depend on the scale of its argument.
   Poly p = poly(argument);
+  if (p.size() == 1 && p.begin()->first.size() == 1 && Rational(0) < p.begin()->second) {
+    // max(..., c) >= 0 for a number c >= 0
+    const Atom& a = atoms_[p.begin()->first[0].index()];
+    const bool max = a.kind == Atom::Kind::kFunction && a.function == Elementary::kMax;
+    for (size_t i = 0; max && i < a.args.size(); ++i) {
+      if (const auto value = ConstantOf(poly(a.args[i])); value && *value >= Rational(0)) return std::nullopt;
+    }
+  }
   if (const auto value = ConstantOf(p); value && *value >= Rational(0)) return std::nullopt;
   const Rational lead = p.begin()->second;
   const Rational scale = Rational(1) / (lead < Rational(0) ? Rational(0) - lead : lead);

@@ -1,6 +1,7 @@
 #include "solve/certify/normal.h"
 
 #include <fmt/format.h>
+#include <gmpxx.h>
 
 #include <algorithm>
 #include <optional>
@@ -23,6 +24,26 @@ Monomial Merge(const Monomial& a, const Monomial& b) {
   Monomial result;
   std::merge(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result));
   return result;
+}
+
+// c = f^2 r for a positive c; r is an integer without squares of small primes, and no square itself unless 1.
+std::pair<Rational, Rational> SquareFactor(const Rational& c) {
+  const mpz_class denominator(c.Denominator());
+  mpz_class rest = mpz_class(c.Numerator()) * denominator, factor = 1;
+  constexpr unsigned kLargest = 1'000;
+  for (unsigned p = 2; p <= kLargest; ++p) {
+    const mpz_class square = mpz_class(p) * p;
+    while (mpz_divisible_p(rest.get_mpz_t(), square.get_mpz_t()) != 0) {
+      rest /= square;
+      factor *= p;
+    }
+  }
+  if (mpz_perfect_square_p(rest.get_mpz_t()) != 0) {
+    factor *= sqrt(rest);
+    rest = 1;
+  }
+  return {*Rational::Parse(factor.get_str()) / *Rational::Parse(denominator.get_str()),
+          *Rational::Parse(rest.get_str())};
 }
 
 }  // namespace
@@ -164,6 +185,17 @@ PolyId Normal::Function(Elementary function, std::vector<PolyId> args) {
   }
   if (values.size() == args.size()) {
     if (const auto value = expr::ExactValue(function, values)) return Intern(ConstantPoly(*value));
+  }
+  // sqrt(f^2 e) = f sqrt(e), so that the first coefficient of e is without squares.
+  if (function == Elementary::kSqrt && !poly(args[0]).empty()) {
+    Poly p = poly(args[0]);
+    const Rational lead = p.begin()->second;
+    const auto [factor, rest] = SquareFactor(lead < Rational(0) ? Rational(0) - lead : lead);
+    if (!(factor == Rational(1))) {
+      const Rational scale = Rational(1) / (factor * factor);
+      for (auto& [m, c] : p) c = c * scale;
+      return Intern(Times(Poly(poly(Function(function, {Intern(std::move(p))}))), ConstantPoly(factor)));
+    }
   }
   Atom atom;
   atom.kind = Atom::Kind::kFunction;
