@@ -32,7 +32,7 @@ def check(name, good, detail=""):
 
 LINEFORM = "examples/koord/lineform.koord"
 
-for args in (["--help"], ["check", "--help"], ["prove", "--help"], ["fmt", "--help"], ["explain", "--help"], ["ast", "--help"], ["solve", "--help"], ["certify", "--help"], ["project", "--help"]):
+for args in (["--help"], ["check", "--help"], ["prove", "--help"], ["fmt", "--help"], ["explain", "--help"], ["ast", "--help"], ["solve", "--help"], ["certify", "--help"], ["project", "--help"], ["infer", "regions", "--help"]):
     done = rondo(*args)
     check(f"{args}", done.returncode == 0 and "example" in done.stdout, done.stdout + done.stderr)
 for args in ([], ["nonsense"], ["prove"], ["prove", LINEFORM, "--robots", "0"], ["explain", "koord-nonsense"]):
@@ -118,6 +118,32 @@ check("a list of nodes", {n["kind"] for n in nodes} == {"message", "motion", "ch
 check("no such choreography", "did you mean `Shuttle`" in rondo("graph", shuttle, "--choreography", "Shutle").stderr)
 check("formatted", rondo("fmt", "--check", *map(str, (ROOT / "models").glob("*.rondo")), *map(str, (ROOT / "examples/choreo").glob("*.rondo"))).returncode == 0)
 check("no formatter of the original files", "not formatted" in rondo("fmt", "--check", "src/choreo/syntax/testdata/equations/good.chor").stderr)
+
+# Choreographies proved: cache, files, pictures, JSON that is nothing but JSON, options of the other language, Ctrl-C.
+handover = "examples/choreo/handover.rondo"
+check("proved motions", "proved and certified: Handover" in rondo("prove", handover).stdout)
+check("cached motions", "known from the cache" in rondo("prove", handover).stdout)
+done = rondo("prove", "--no-cache", "--json", "--svg", str(picture), "--smt-out", str(FOLDER / "obligations"), "--certificates", str(FOLDER / "certificates"), handover)
+check("JSON of motions", json.loads(done.stdout)["status"] == 0 and "from above" in picture.read_text(), done.stdout[:300] + done.stderr)
+ElementTree.parse(picture)
+scripts = sorted((FOLDER / "obligations").glob("*.smt2"))
+check("obligations as scripts", len(scripts) > 20 and all("set-info :status" in s.read_text() for s in scripts))
+small = [s for s in scripts if "precondition" in s.name]
+check("scripts are read", all(rondo("solve", "--solver", "icp", str(s)).stdout.startswith("unsat") for s in small[:3]))
+certificates = sorted((FOLDER / "certificates").glob("*.cert"))
+check("certificates of motions", len(certificates) > 20 and rondo("certify", *map(str, certificates[:5])).returncode == 0)
+check("a folder that cannot be written", "problem:" in rondo("prove", "--no-cache", "--smt-out", "/dev/null/x", handover).stdout)
+check("an option for Koord", rondo("prove", "--robots", "3", handover).returncode == 2)
+check("an option for motions", rondo("prove", "--svg", "x.svg", LINEFORM).returncode == 2)
+check("nothing to prove", "there is no choreography" in rondo("prove", "models/carts.rondo").stderr)
+done = rondo("infer", "regions", shuttle)
+check("regions", done.returncode == 0 and "thread region x < 0.8 m" in done.stdout, done.stdout + done.stderr)
+check("regions as JSON", len(json.loads(rondo("infer", "regions", "--json", shuttle).stdout)["regions"]) == 8)
+process = subprocess.Popen([RONDO, "prove", "--no-cache", "--jobs", "1", "examples/choreo/sorting.rondo"], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENV)
+time.sleep(0.4)  # any moment will do
+process.send_signal(signal.SIGINT)
+stdout, stderr = process.communicate(timeout=120)
+check("Ctrl-C while motions are proved", process.returncode in (0, 1, 3, -2), f"{process.returncode} {stdout} {stderr}")
 
 # The cache: the second run finds the proofs; a changed program does not.
 cached = rondo("prove", LINEFORM)

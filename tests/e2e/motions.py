@@ -88,5 +88,17 @@ with tempfile.TemporaryDirectory() as folder:
         status, report = prove(path)
         check(f"{example} without regions", status == 0 and report["choreographies"][0]["regions"], f"status {status}")
 
+# The listings of the tutorial get the verdicts that it states.
+with tempfile.TemporaryDirectory() as folder:
+    text = (ROOT / "docs/tutorial-handover.md").read_text()
+    listings = re.findall(r"<!-- prove: (\d) ?(\S*) -->\n```\n(.*?)```", text, re.DOTALL)
+    check("tutorial", len(listings) == 4, str(len(listings)))
+    for i, (wanted, kind, listing) in enumerate(listings):
+        path = pathlib.Path(folder) / f"listing{i}.rondo"
+        path.write_text(listing)
+        status, report = prove(path)
+        kinds = {d["kind"] for d in report["diagnostics"]}
+        check(f"listing {i + 1} of the tutorial", status == int(wanted) and kinds == ({kind} - {""}), f"status {status}, {sorted(kinds)}")
+
 print(f"{results['passed']} passed, {results['failed']} failed")
 sys.exit(1 if results["failed"] else 0)

@@ -75,7 +75,7 @@ class Inferring {
     std::mt19937_64 random(1);
     for (Source& s : sources) {
       if (!Prepare(s, random))
-        return Fail(id, before, s.thread, fmt::format("no state of {} was found", s.obligation.title));
+        return Fail(id, before, s.thread, fmt::format("no state of {} was found", MotionOf(s)));
     }
     bool cut = false;
     stop_ = options_.stop.WithDeadline(base::StopToken::Clock::now() + options_.limits.time);
@@ -95,8 +95,8 @@ class Inferring {
       if (cells.conflict) {
         const auto& [a, b] = *cells.conflict;
         return Fail(id, before, a.thread,
-                    fmt::format("nothing separates {} and {}", sources[a.source].obligation.title,
-                                sources[b.source].obligation.title));
+                    fmt::format("nothing separates {} and {}", MotionOf(sources[a.source]),
+                                MotionOf(sources[b.source])));
       }
       for (size_t b = 0; b < threads; ++b) {
         ThreadFacts& f = graph_[id].facts[b];
@@ -118,6 +118,12 @@ class Inferring {
       }
     }
     Fail(id, before, 0, "the regions that samples suggest cannot be proved");
+  }
+
+  // The motion of an obligation "the region of `a: M()`".
+  static std::string MotionOf(const Source& source) {
+    const std::string& title = source.obligation.title;
+    return title.substr(std::min(title.find('`'), title.size()));
   }
 
   void Fail(NodeId id, const std::vector<ThreadFacts>& before, size_t thread, const std::string& why) {
