@@ -46,7 +46,8 @@ TEST_F(Terms, NestedFunctionsAreDefinedFromTheInside) {
 }
 
 TEST_F(Terms, ACopyMeansTheSame) {
-  const TermId f = arena.Or(arena.Lt(Root(arena.Mul(x, x)), Number(2)), arena.Eq(arena.Divide(x, Number(3)), Number(5)));
+  const TermId f =
+      arena.Or(arena.Lt(Root(arena.Mul(x, x)), Number(2)), arena.Eq(arena.Divide(x, Number(3)), Number(5)));
   Arena other;
   Importer import(arena, other);
   const TermId g = import(f);

@@ -69,11 +69,13 @@ class View {
   void Axes(const std::string& name, const char* vertical) {
     svg_.Text(left_ + kMargin, kTitle - 8, name, Svg::Anchor::kStart, kSide, true);
     const double step = Step();
-    for (double x = std::ceil(x_.low / step) * step; x <= x_.high + 1e-9; x += step) {
+    for (int k = 0; k * step <= x_.high - Up(x_.low, step) + 1e-9; ++k) {
+      const double x = Up(x_.low, step) + k * step;
       svg_.Line(X(x), Y(y_.low), X(x), Y(y_.high), "#e5e5e5");
       svg_.Text(X(x), Y(y_.low) + 14, fmt::format("{:.4g}", Clean(x)), Svg::Anchor::kMiddle, 60);
     }
-    for (double y = std::ceil(y_.low / step) * step; y <= y_.high + 1e-9; y += step) {
+    for (int k = 0; k * step <= y_.high - Up(y_.low, step) + 1e-9; ++k) {
+      const double y = Up(y_.low, step) + k * step;
       svg_.Line(X(x_.low), Y(y), X(x_.high), Y(y), "#e5e5e5");
       svg_.Text(X(x_.low) - 6, Y(y) + 4, fmt::format("{:.4g}", Clean(y)), Svg::Anchor::kEnd, 60);
     }
@@ -93,6 +95,8 @@ class View {
   }
 
  private:
+  // The next multiple of `step`.
+  static double Up(double v, double step) { return std::ceil(v / step) * step; }
   static double Clean(double v) { return std::abs(v) < 1e-9 ? 0 : v; }
   double Step() const {
     const double rough = std::max(x_.high - x_.low, y_.high - y_.low) / 6;

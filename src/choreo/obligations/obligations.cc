@@ -169,7 +169,7 @@ class Builder {
     s_.Unsat(ObligationKind::kTotalChoice, n.span,
              {fmt::format("some alternative of `{}` is open", NameOf(n.chooser)),
               fmt::format("`{}` may have no alternative", NameOf(n.chooser))},
-             std::move(formulas));
+             formulas);
   }
 
   // What is sent is some value as promised, or the value that is stated; the guard holds.
@@ -207,7 +207,7 @@ class Builder {
     for (const auto& [guarantee, span] : context.guarantees) {
       auto formulas = during;
       formulas.push_back(s_.Fails(guarantee));
-      s_.Unsat(ObligationKind::kGuarantee, n.span, Noun("what the thread guarantees"), std::move(formulas));
+      s_.Unsat(ObligationKind::kGuarantee, n.span, Noun("what the thread guarantees"), formulas);
     }
     std::vector<Member> members;
     for (const Part& p : n.parts) {
@@ -284,7 +284,7 @@ class Builder {
     formulas.push_back(s_.Elapsed(instance.duration));
     formulas.push_back(s_.Fails(instance.contract.assume));
     s_.Unsat(ObligationKind::kAssumption, p.span,
-             Noun(fmt::format("what `{}: {}` assumes", NameOf(p.robot), instance.text)), std::move(formulas));
+             Noun(fmt::format("what `{}: {}` assumes", NameOf(p.robot), instance.text)), formulas);
   }
 
   // A process decides and calls by what its robot knows.
@@ -345,7 +345,7 @@ class Builder {
       if (own.assume != arena_.True()) {
         others.push_back(s_.Fails(own.assume));
         s_.Unsat(ObligationKind::kThread, own.span,
-                 Noun(fmt::format("what the thread of {} assumes", robots)), std::move(others));
+                 Noun(fmt::format("what the thread of {} assumes", robots)), others);
       }
       if (own.region && context.region) {
         auto formulas = context.assumptions;
@@ -353,7 +353,7 @@ class Builder {
         s_.Unsat(ObligationKind::kFork, own.span,
                  {fmt::format("the region of {} within that around it", robots),
                   fmt::format("the region of {} reaches beyond that around it", robots)},
-                 std::move(formulas));
+                 formulas);
       }
       Context inner = context;
       inner.guarantees.clear();

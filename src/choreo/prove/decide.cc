@@ -56,6 +56,7 @@ class Deciding {
   Deciding(const Obligation& obligation, const robot::World& world, const Arena& from,
            const solve::icp::Options& engine, const Limits& limits, const base::StopToken& stop)
       : obligation_(obligation),
+        world_(world),
         copy_(from, arena_),
         engine_(engine),
         limits_(limits),
@@ -63,13 +64,6 @@ class Deciding {
         stop_(stop.WithDeadline(deadline_)) {
     point_ = copy_(world.point);
     if (obligation.meeting) meeting_ = copy_(*obligation.meeting);
-    for (const robot::Body& b : world.bodies) {
-      for (const auto& v : b.states) names_.emplace_back(v.term, copy_(v.term));
-      for (const auto& v : b.inputs) names_.emplace_back(v.term, copy_(v.term));
-    }
-    for (const auto& v : world.environment) names_.emplace_back(v.term, copy_(v.term));
-    names_.emplace_back(world.clock, copy_(world.clock));
-    for (size_t i = 0; i < 3; ++i) names_.emplace_back(world.point[i], point_[i]);
   }
 
   Decision Run() {
@@ -113,7 +107,20 @@ class Deciding {
     decision_.way = way;
   }
 
+  // All variables of the world, the point last: only a witness needs them.
+  void NameVariables() {
+    if (!names_.empty()) return;
+    for (const robot::Body& b : world_.bodies) {
+      for (const auto& v : b.states) names_.emplace_back(v.term, copy_(v.term));
+      for (const auto& v : b.inputs) names_.emplace_back(v.term, copy_(v.term));
+    }
+    for (const auto& v : world_.environment) names_.emplace_back(v.term, copy_(v.term));
+    names_.emplace_back(world_.clock, copy_(world_.clock));
+    for (size_t i = 0; i < 3; ++i) names_.emplace_back(world_.point[i], point_[i]);
+  }
+
   void SetWitness(const solve::Answer& answer) {
+    NameVariables();
     const Numeric::Point found = PointOf(answer);
     decision_.witness.values.clear();
     for (const auto& [original, own] : names_) {
@@ -285,6 +292,7 @@ class Deciding {
   }
 
   const Obligation& obligation_;
+  const robot::World& world_;
   Arena arena_;
   Copy copy_;
   const solve::icp::Options& engine_;

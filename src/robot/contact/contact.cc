@@ -30,10 +30,11 @@ class Scene {
     }
     std::vector<double> s;
     for (const TermId t : shape.sizes) s.push_back(numeric_(t));
-    const auto add = [&](std::shared_ptr<fcl::CollisionGeometryd> geometry, const fcl::Vector3d& middle) {
+    const auto add = [&](const std::shared_ptr<fcl::CollisionGeometryd>& geometry,
+                         const fcl::Vector3d& middle) {
       fcl::Transform3d at = pose;
       at.translation() += pose.linear() * middle;
-      objects.emplace_back(std::move(geometry), at);
+      objects.emplace_back(geometry, at);
       return true;
     };
     switch (shape.kind) {
