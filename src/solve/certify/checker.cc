@@ -1,6 +1,7 @@
 #include "solve/certify/checker.h"
 
 #include <fmt/format.h>
+#include <mpfr.h>
 
 #include <algorithm>
 #include <set>
@@ -290,9 +291,20 @@ class Checker {
   std::vector<Branch> open_;
 };
 
+/// MPFR keeps constants and memory for each thread, and leaves it to the thread to give them back.
+class ThreadCache {
+ public:
+  ThreadCache() = default;
+  ThreadCache(const ThreadCache&) = delete;
+  ThreadCache& operator=(const ThreadCache&) = delete;
+  ~ThreadCache() { mpfr_free_cache2(MPFR_FREE_LOCAL_CACHE); }
+};
+
 }  // namespace
 
 Tally Check(const Certificate& certificate, diag::Diagnostics& diagnostics, const base::StopToken& stop) {
+  thread_local const ThreadCache cache;
+  static_cast<void>(&cache);  // made at the first use in a thread
   Tally tally;
   Checker checker(certificate, stop);
   try {
