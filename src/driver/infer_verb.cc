@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "driver/exit_status.h"
-#include "driver/interrupt.h"
 #include "driver/motion.h"
 #include "driver/motion_report.h"
 #include "driver/terminal.h"
@@ -42,13 +41,7 @@ int Run(const Options& options) {
   const base::StopToken stop;
   std::string text;
   for (choreo::Graph& graph : motion->graphs) {
-    ProgressLine line;
-    const InterruptScope interrupt(stop);
-    choreo::InferOptions infer;
-    infer.stop = stop;
-    infer.limits.time = std::chrono::milliseconds(static_cast<int64_t>(options.timeout * 1000));
-    infer.progress = [&](const std::string& robots) { line.Show("looking for regions of " + robots); };
-    const choreo::Inference regions = choreo::InferRegions(graph, motion->arena, infer);
+    const choreo::Inference regions = FindRegions(graph, motion->arena, options.timeout, stop);
     text += RegionLines(regions, session.sources);
     for (const choreo::FoundRegion& r : regions.found)
       list.push_back({{"robots", r.robots}, {"region", r.text}});

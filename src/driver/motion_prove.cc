@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "choreo/draw/scene.h"
-#include "choreo/infer/regions.h"
 #include "choreo/prove/sampler.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
@@ -54,15 +53,7 @@ class Run {
   void Prove(choreo::Graph& graph, const std::vector<choreo::SideCondition>& conditions, expr::Arena& arena) {
     MotionReport report;
     report.graph = &graph;
-    {
-      ProgressLine line;
-      const InterruptScope interrupt(stop_);
-      choreo::InferOptions infer;
-      infer.stop = stop_;
-      infer.limits.time = Milliseconds();
-      infer.progress = [&](const std::string& robots) { line.Show("looking for regions of " + robots); };
-      report.regions = choreo::InferRegions(graph, arena, infer);
-    }
+    report.regions = FindRegions(graph, arena, options_.timeout, stop_);
     report.obligations = choreo::ObligationsOf(graph, arena, conditions);
     // Said below, with the reason.
     if (!report.regions.failed.empty())
@@ -70,7 +61,7 @@ class Run {
     const solve::cache::ProofCache cache(options_.cache ? solve::cache::ProofCache::DefaultFolder()
                                                         : std::filesystem::path());
     choreo::ProveOptions prove;
-    prove.limits.time = Milliseconds();
+    prove.limits.time = std::chrono::milliseconds(static_cast<int64_t>(options_.timeout * 1000));
     prove.limits.certificates = options_.certify;
     prove.jobs = options_.jobs;
     prove.cache = options_.cache ? &cache : nullptr;
@@ -133,10 +124,6 @@ class Run {
         shapes.push_back({"", failed->meeting->shapes[i], kFills[i], kStrokes[i]});
     }
     return choreo::DrawScene(arena, shapes, state, mark, title);
-  }
-
-  std::chrono::milliseconds Milliseconds() const {
-    return std::chrono::milliseconds(static_cast<int64_t>(options_.timeout * 1000));
   }
 
   int Finish(int status) {

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "driver/exit_status.h"
+#include "driver/interrupt.h"
+#include "driver/terminal.h"
 
 namespace rondo::driver {
 
@@ -145,6 +147,17 @@ std::string RegionLines(const choreo::Inference& regions, const diag::SourceSet&
                         sources.Locate(r.span.file, r.span.begin).line, r.text, r.robots);
   }
   return text;
+}
+
+choreo::Inference FindRegions(choreo::Graph& graph, expr::Arena& arena, double seconds,
+                              const base::StopToken& stop) {
+  ProgressLine line;
+  const InterruptScope interrupt(stop);
+  choreo::InferOptions infer;
+  infer.stop = stop;
+  infer.limits.time = std::chrono::milliseconds(static_cast<int64_t>(seconds * 1000));
+  infer.progress = [&](const std::string& robots) { line.Show("looking for regions of " + robots); };
+  return choreo::InferRegions(graph, arena, infer);
 }
 
 void ReportRegions(const choreo::Inference& regions, diag::Diagnostics& diagnostics) {

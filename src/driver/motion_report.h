@@ -23,6 +23,11 @@ int StatusOf(const MotionReport& report);
 /// One line for each kind of obligation: how many hold, fail, are open, and how long that took.
 std::string MotionTable(const MotionReport& report);
 
+/// Looks for the regions that are missing, for so many seconds for each fork, with progress on a terminal;
+/// Ctrl-C stops it.
+choreo::Inference FindRegions(choreo::Graph& graph, expr::Arena& arena, double seconds,
+                              const base::StopToken& stop);
+
 /// Reports the threads for which no region was found, and why.
 void ReportRegions(const choreo::Inference& regions, diag::Diagnostics& diagnostics);
 

@@ -91,18 +91,17 @@ class Builder {
   // A shape that has no value, or no points, would be in nobody's way.
   void Solid() {
     for (const robot::Body& b : graph_.world->bodies) {
-      if (b.body)
-        Exists(b.type->name.span, fmt::format("the body of `{}`", b.name.text), *b.body, arena_.True());
+      if (b.body) Exists(b.type->name.span, fmt::format("the body of `{}`", b.name.text), *b.body);
     }
     for (const robot::Obstacle& o : graph_.world->obstacles)
-      Exists(o.name.span, fmt::format("the obstacle `{}`", o.name.text), o.shape, arena_.True());
+      Exists(o.name.span, fmt::format("the obstacle `{}`", o.name.text), o.shape);
   }
 
-  void Exists(diag::Span span, const std::string& what, const Shape& shape, TermId when) {
+  void Exists(diag::Span span, const std::string& what, const Shape& shape) {
     s_.Unsat(ObligationKind::kBody, span,
              {what + " has points, whatever the state is", what + " may have no points"},
-             {when, robot::MayBeEmpty(arena_, shape)});
-    s_.Sat(span, {what + " has points", what + " has no points"}, {when, In(shape)}, ObligationKind::kBody);
+             {robot::MayBeEmpty(arena_, shape)});
+    s_.Sat(span, {what + " has points", what + " has no points"}, {In(shape)}, ObligationKind::kBody);
   }
 
   void Initial() {

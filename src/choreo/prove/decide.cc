@@ -234,6 +234,15 @@ class Deciding {
     return false;
   }
 
+  // |variable - value| <= slack
+  void Near(TermId variable, double value, double slack, std::vector<TermId>& formulas) {
+    if (!std::isfinite(value)) return;
+    const TermId at = arena_.Number(arena_.Real(), expr::Rational::FromDouble(value));
+    const TermId by = arena_.Number(arena_.Real(), expr::Rational::FromDouble(slack));
+    formulas.push_back(arena_.Le(arena_.Sub(variable, at), by));
+    formulas.push_back(arena_.Le(arena_.Sub(at, variable), by));
+  }
+
   void Points() {
     const TermId whole = robot::Formula(arena_, point_, *meeting_);
     // Where the shapes seem to meet, if that is known: then only the point is missing.
@@ -241,11 +250,7 @@ class Deciding {
       for (const double slack : {0.0, 1e-6, 1e-3}) {
         std::vector<TermId> near{whole};
         for (const auto& [variable, value] : PointOf(*meets_)) {
-          if (!std::isfinite(value)) continue;
-          const TermId at = arena_.Number(arena_.Real(), expr::Rational::FromDouble(value));
-          const TermId by = arena_.Number(arena_.Real(), expr::Rational::FromDouble(slack));
-          near.push_back(arena_.Le(arena_.Sub(variable, at), by));
-          near.push_back(arena_.Le(arena_.Sub(at, variable), by));
+          Near(variable, value, slack, near);
         }
         if (slack == 0 && !Exact(*meets_, near)) continue;
         solve::Answer answer = Ask(arena_.And(near), false);
@@ -280,11 +285,7 @@ class Deciding {
     std::vector<TermId> near{whole};
     for (size_t i = 0; i + 3 < names_.size(); ++i) {
       const auto it = local.find(names_[i].first);
-      if (it == local.end() || !std::isfinite(it->second)) continue;
-      const TermId at = arena_.Number(arena_.Real(), expr::Rational::FromDouble(it->second));
-      const TermId by = arena_.Number(arena_.Real(), expr::Rational::FromDouble(1e-6));
-      near.push_back(arena_.Le(arena_.Sub(names_[i].second, at), by));
-      near.push_back(arena_.Le(arena_.Sub(at, names_[i].second), by));
+      if (it != local.end()) Near(names_[i].second, it->second, 1e-6, near);
     }
     solve::Answer answer = Ask(arena_.And(near), false);
     if (std::holds_alternative<solve::Sat>(answer)) return SetWitness(answer);

@@ -109,7 +109,7 @@ class Proving {
           fmt::format("the certificate of \"{}\" was rejected: {}", obligation.title, rejected));
     }
     if (proof.decision.verdict != Verdict::kProved) return proof;
-    if (options_.cache != nullptr && proof.decision.verdict == Verdict::kProved && proof.certified == certify)
+    if (options_.cache != nullptr && proof.certified == certify)
       options_.cache->Store(key, {std::string(kEngine), {}});
     return proof;
   }

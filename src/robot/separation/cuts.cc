@@ -65,10 +65,7 @@ class Search {
 
   void Mixed(size_t first, Cut& cut) {
     const Separation best = Separate(sets_, first);
-    if (cut.apart < -best.sum) {
-      cut.apart = -best.sum;
-      for (int i = 0; i < 3; ++i) cut.point[static_cast<size_t>(i)] = best.point[i];
-    }
+    cut.apart = std::max(cut.apart, -best.sum);
     if (!(best.sum < -1e-9)) return;
     bool free = false;
     for (size_t i = 0; i < piece_.size(); ++i)

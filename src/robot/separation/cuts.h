@@ -13,8 +13,6 @@ struct Cut {
   std::vector<TermId> conditions;
   /// The sets are at least this far apart there, as far as numbers tell, in metres; negative: they overlap.
   double apart = 0;
-  /// A point that is in all sets, or nearly.
-  std::array<double, 3> point{};
 };
 
 /// Separating directions for the sets of one piece. If directions d_i of the sets sum to 0, and the sums of
