@@ -31,13 +31,11 @@ class Proving {
     base::ParallelFor(total, options_.jobs, [&](size_t i) {
       const Obligation& obligation = obligations_.all[i];
       Proof proof;
-      if (options_.stop.StopRequested()) {
-        proof.decision.reason = "interrupted";
-      } else {
-        const auto start = Clock::now();
-        proof = One(obligation, i);
-        proof.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-      }
+      const auto start = Clock::now();
+      if (!options_.stop.StopRequested()) proof = One(obligation, i);
+      proof.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      proof.interrupted = proof.decision.verdict == Verdict::kUnknown && options_.stop.cancelled();
+      if (proof.interrupted) proof.decision.reason = "interrupted";
       const std::scoped_lock lock(mutex_);
       proofs_.all[i] = std::move(proof);
       if (options_.progress) options_.progress(++done, total, obligation.title);

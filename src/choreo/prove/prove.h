@@ -12,9 +12,10 @@ namespace rondo::choreo {
 struct Proof {
   Decision decision;
   double seconds = 0;
-  bool cached = false;     ///< known from an earlier run
-  bool certified = false;  ///< proved, and the checker has accepted every certificate
-  bool confirmed = false;  ///< refuted, and FCL sees the contact of the witness as well
+  bool cached = false;       ///< known from an earlier run
+  bool certified = false;    ///< proved, and the checker has accepted every certificate
+  bool interrupted = false;  ///< unknown, because it was stopped by hand
+  bool confirmed = false;    ///< refuted, and FCL sees the contact of the witness as well
 };
 
 struct ProveOptions {

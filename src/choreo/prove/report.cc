@@ -200,7 +200,8 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
       if (const auto help = HelpFor(o.kind); !help.empty()) report.Help(std::string(help));
       continue;
     }
-    if (!IsRequired(o.kind)) continue;
+    // What was interrupted is counted, and said once for all.
+    if (!IsRequired(o.kind) || proofs.all[i].interrupted) continue;
     diag::Diagnostic& report =
         diagnostics.Report(Kind::kChoreoUnknown, o.span, fmt::format("not decided: {}", o.title));
     report.Note(d.reason);
@@ -240,7 +241,7 @@ std::vector<std::string> AssumptionsOf(const Graph& graph, const Obligations& ob
     result.push_back(
         "motions of one step that cannot be interrupted end at the same moment (equal_durations)");
   for (size_t i = 0; i < obligations.all.size(); ++i) {
-    if (obligations.all[i].kind == ObligationKind::kStart &&
+    if (obligations.all[i].kind == ObligationKind::kStart && !proofs.all[i].interrupted &&
         proofs.all[i].decision.verdict != Verdict::kProved)
       result.push_back(obligations.all[i].failure);
   }
