@@ -125,6 +125,17 @@ enum class Kind : uint8_t {
   kKoordNeverEnabled,
   kKoordUnusedAssumption,
   kKoordDisagreement,
+  // Koord: running.
+  kKoordNotExecutable,
+  kKoordNotChecked,
+  kKoordNoInitialState,
+  kKoordViolated,
+  kKoordFault,
+  kKoordSummaryBroken,
+  kKoordAssumptionBroken,
+  kKoordStuck,
+  kKoordDeadlock,
+  kKoordNeverHappened,
   kCount_,  // not a kind
 };
 

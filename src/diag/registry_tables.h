@@ -17,5 +17,6 @@ std::span<const KindInfo> KoordNameKinds();
 std::span<const KindInfo> KoordTypeKinds();
 std::span<const KindInfo> KoordControlKinds();
 std::span<const KindInfo> KoordProofKinds();
+std::span<const KindInfo> KoordRunKinds();
 
 }  // namespace rondo::diag

@@ -28,6 +28,7 @@ int Main(int argc, char** argv) {
   AddCheckVerb(app, status);
   AddFormatVerb(app, status);
   AddProveVerb(app, status);
+  AddExploreVerb(app, status);
   AddInferVerb(app, status);
   AddGraphVerb(app, status);
   AddProjectVerb(app, status);

@@ -14,6 +14,7 @@ void AddInferVerb(CLI::App& app, int& status);
 void AddGraphVerb(CLI::App& app, int& status);
 void AddProjectVerb(CLI::App& app, int& status);
 void AddProveVerb(CLI::App& app, int& status);
+void AddExploreVerb(CLI::App& app, int& status);
 void AddSolveVerb(CLI::App& app, int& status);
 void AddCertifyVerb(CLI::App& app, int& status);
 void AddExplainVerb(CLI::App& app, int& status);

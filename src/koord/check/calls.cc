@@ -20,7 +20,7 @@ struct BuiltinName {
 constexpr BuiltinName kBuiltins[] = {
     {"pos", Builtin::kPos},   {"pos3d", Builtin::kPos}, {"mid", Builtin::kMid},  {"midpoint", Builtin::kMid},
     {"dist", Builtin::kDist}, {"len", Builtin::kLen},   {"abs", Builtin::kAbs},  {"min", Builtin::kMin},
-    {"max", Builtin::kMax},   {"old", Builtin::kOld},   {"rect", Builtin::kRect}};
+    {"max", Builtin::kMax},   {"old", Builtin::kOld},   {"rect", Builtin::kRect}, {"grid", Builtin::kGrid}};
 
 }  // namespace
 
@@ -228,6 +228,20 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
     case Builtin::kRect:
       Arity(e, 2, 2, name);
       return Mismatch(e.span, "`rect(a, b)` can only stand behind `in`");
+    case Builtin::kGrid: {
+      if (!grid_allowed_) {
+        diagnostics_.Report(Kind::kKoordSpecScope, e.span, "`grid` has a meaning only behind `in` in `explore`")
+            .Help("elsewhere, write a list");
+      }
+      if (!Arity(e, 3, 3, name)) return types.error();
+      const TypeId low = Expr(e.args[1]);
+      TypeId element = types.Is(low, TypeKind::kInt) ? types.integer() : types.real();
+      if (types.Resolve(low) == types.pos()) element = types.pos();
+      NeedType(e.args[1], element, "the first point of a grid");
+      NeedType(e.args[2], element, "the last point of a grid");
+      NeedType(e.args[3], element == types.integer() ? element : types.real(), "the step of a grid");
+      return types.List(element);
+    }
     case Builtin::kRemove:
     case Builtin::kAppend:
       break;  // methods

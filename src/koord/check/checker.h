@@ -84,6 +84,14 @@ class Checker {
   void Assume(const AssumeDef& def);
   void Summary(const SummaryDef& def);
   void Invariant(const InvariantDef& def);
+
+  // explorations.cc
+  void Explore(const ExploreEntry& entry);
+  void ExploreValue(const ExploreEntry& entry);
+  void ExploreVariable(const ExploreEntry& entry, size_t variable);
+  void ExploreFunction(const ExploreEntry& entry);
+  int FindFunction(const std::string& name) const;
+
   /// An initial value may mention parameters, functions and, where each robot has its own, `pid`.
   void RestrictInitial(ExprId e, const Variable& variable);
   /// Reports each name in `e` that this kind of specification must not mention.
@@ -97,6 +105,7 @@ class Checker {
   std::map<std::string, diag::Span> claimed_;
   std::set<std::string> modules_;
   std::map<std::string, std::pair<TypeId, uint32_t>> enum_members_;
+  std::vector<const ExploreDef*> explorations_;
   std::vector<uint32_t> scope_;            // bindings that are visible, innermost last
   std::map<int, std::set<size_t>> calls_;  // function (-1: none) -> functions that its body calls
   Place place_ = Place::kSpec;
@@ -104,6 +113,7 @@ class Checker {
   int loops_ = 0;
   int atomic_ = 0;
   bool old_allowed_ = false;
+  bool grid_allowed_ = false;  // `grid(...)` may stand here
   bool writing_ = false;  // the target of an assignment may be an actuator
 };
 

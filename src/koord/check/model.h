@@ -62,7 +62,20 @@ struct Ref {
   uint32_t index = 0;
 };
 
-enum class Builtin : uint8_t { kPos, kMid, kDist, kLen, kAbs, kMin, kMax, kRemove, kAppend, kOld, kRect };
+enum class Builtin : uint8_t {
+  kPos,
+  kMid,
+  kDist,
+  kLen,
+  kAbs,
+  kMin,
+  kMax,
+  kRemove,
+  kAppend,
+  kOld,
+  kRect,
+  kGrid  ///< only in the `explore` section
+};
 
 /// A variable of a quantifier, loop, function or summary.
 struct Binding {
@@ -73,6 +86,14 @@ struct Binding {
 
 /// What `forall i in D` ranges over.
 enum class DomainKind : uint8_t { kRobots, kType, kList };
+
+/// The `explore` sections: what makes the program executable in finitely many ways.
+struct Exploration {
+  ExprId robots;                                   ///< N_sys: a number or a list; invalid if not given
+  std::map<size_t, ExprId> values;                 ///< by parameter
+  std::map<size_t, ExprId> choices;                ///< by variable: a list of its values, for each robot
+  std::map<size_t, const ExploreEntry*> functions; ///< by external function; its bindings are in `bound_by`
+};
 
 /// A program whose names and types are known. Points into the Program, which must outlive it.
 struct Model {
@@ -87,6 +108,7 @@ struct Model {
   std::vector<const AssumeDef*> assumptions;
   std::vector<const SummaryDef*> summaries;
   std::vector<const InvariantDef*> invariants;
+  Exploration exploration;
 
   // By expression.
   std::vector<TypeId> type_of;

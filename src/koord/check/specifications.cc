@@ -14,6 +14,9 @@ void Checker::Specifications() {
   for (const AssumeDef* def : model_.assumptions) Assume(*def);
   for (const SummaryDef* def : model_.summaries) Summary(*def);
   for (const InvariantDef* def : model_.invariants) Invariant(*def);
+  for (const ExploreDef* def : explorations_) {
+    for (const ExploreEntry& entry : def->entries) Explore(entry);
+  }
 }
 
 void Checker::Invariant(const InvariantDef& def) { NeedBool(def.body, "an invariant"); }
@@ -44,12 +47,7 @@ void Checker::Assume(const AssumeDef& def) {
 }
 
 void Checker::Summary(const SummaryDef& def) {
-  int index = -1;
-  for (size_t i = 0; i < model_.functions.size(); ++i) {
-    const Function& f = model_.functions[i];
-    if (f.name == def.function || (f.port >= 0 && f.name.ends_with("." + def.function)))
-      index = static_cast<int>(i);
-  }
+  int index = FindFunction(def.function);
   if (index < 0) index = static_cast<int>(FunctionNamed(def.function, def.parameters.size(), def.span));
   Function& f = model_.functions[static_cast<size_t>(index)];
   if (!f.external()) {

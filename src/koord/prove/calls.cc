@@ -121,6 +121,7 @@ TermId Executor::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) 
       return result;
     }
     case Builtin::kRect:
+    case Builtin::kGrid:
     case Builtin::kRemove:
     case Builtin::kAppend:
       break;  // not values

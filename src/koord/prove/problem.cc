@@ -2,6 +2,7 @@
 
 #include "expr/lists.h"
 #include "expr/substitute.h"
+#include "koord/check/spec_labels.h"
 #include "solve/instantiate.h"
 
 namespace rondo::koord {
@@ -178,7 +179,7 @@ Problem Problems::Follows(size_t invariant, const std::vector<size_t>& premises)
   const View& view = round_.start();
   std::vector<Assertion> assertions{{Refute(theory_.Invariant(invariant, view)), ""}};
   for (const size_t p : premises)
-    assertions.push_back({theory_.Invariant(p, view), "invariant " + theory_.InvariantName(p)});
+    assertions.push_back({theory_.Invariant(p, view), "invariant " + InvariantName(model_, p)});
   Append(assertions, theory_.PortFacts(view));
   return Ground(std::move(assertions), Everyone());
 }

@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "expr/smtlib.h"
+#include "koord/check/spec_labels.h"
 #include "koord/prove/report.h"
 #include "koord/prove/task.h"
 
@@ -212,7 +213,7 @@ class Prover {
   void MakeRows(Problems& problems) {
     const std::vector<std::string>& actions = problems.round().actions();
     for (size_t i = 0; i < problems.theory().invariants(); ++i)
-      report_.rows.push_back({problems.theory().InvariantName(i), {}, {}, {}});
+      report_.rows.push_back({InvariantName(model_, i), {}, {}, {}});
     Row defined{"well-defined", {}, {}, {}};
     for (const Task& task : tasks_) {
       if (task.kind == TaskKind::kInitially)
@@ -245,7 +246,7 @@ class Prover {
         if (std::holds_alternative<solve::Sat>(task.answer)) {
           std::vector<std::string> names;
           for (const SummaryDef* def : model_.summaries) {
-            if (problems.theory().FunctionOf(*def) == task.subject) names.push_back(Theory::NameOf(*def));
+            if (problems.theory().FunctionOf(*def) == task.subject) names.push_back(SummaryName(*def));
           }
           reporter.Contradiction(fmt::format("for some arguments no result of `{}` is possible",
                                              model_.functions[task.subject].name),
@@ -295,8 +296,8 @@ class Prover {
     }
     std::vector<std::pair<std::string, diag::Span>> stated;
     for (const AssumeDef* def : model_.assumptions)
-      stated.emplace_back(problems.theory().NameOf(*def), def->span);
-    for (const SummaryDef* def : model_.summaries) stated.emplace_back(Theory::NameOf(*def), def->span);
+      stated.emplace_back(AssumptionName(model_, *def), def->span);
+    for (const SummaryDef* def : model_.summaries) stated.emplace_back(SummaryName(*def), def->span);
     for (const auto& [name, span] : stated) {
       if (used.contains(name)) {
         if (std::find(report_.assumed.begin(), report_.assumed.end(), name) == report_.assumed.end())

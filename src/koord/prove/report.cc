@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <set>
 
+#include "koord/check/spec_labels.h"
+
 namespace rondo::koord {
 
 using diag::Kind;
@@ -32,13 +34,13 @@ const char* Describe(CheckKind kind) {
 
 Span Reporter::SpanOf(const std::string& name) const {
   for (const AssumeDef* def : model_.assumptions) {
-    if (problems_.theory().NameOf(*def) == name) return def->span;
+    if (AssumptionName(model_, *def) == name) return def->span;
   }
   for (const SummaryDef* def : model_.summaries) {
-    if (Theory::NameOf(*def) == name) return def->span;
+    if (SummaryName(*def) == name) return def->span;
   }
   for (size_t i = 0; i < model_.invariants.size(); ++i) {
-    if ("invariant " + problems_.theory().InvariantName(i) == name) return model_.invariants[i]->span;
+    if ("invariant " + InvariantName(model_, i) == name) return model_.invariants[i]->span;
   }
   return {};
 }

@@ -1,6 +1,7 @@
 #include "koord/prove/task.h"
 
 #include "base/check.h"
+#include "koord/check/spec_labels.h"
 
 namespace rondo::koord {
 
@@ -18,7 +19,7 @@ std::vector<Task> ListTasks(Problems& problems) {
     tasks.push_back({kind, subject, action, std::move(name), solve::Unknown{"not asked"}, 0, {}});
   };
   for (size_t i = 0; i < problems.theory().invariants(); ++i) {
-    const std::string name = problems.theory().InvariantName(i);
+    const std::string name = InvariantName(problems.vocabulary().model(), i);
     add(TaskKind::kInitially, i, 0, name + ".initially");
     add(TaskKind::kRound, i, 0, name + ".round");
   }
@@ -49,7 +50,7 @@ std::vector<Task> SplitRounds(std::vector<Task> tasks, Problems& problems) {
     }
     for (const size_t a : Columns(problems)) {
       const std::string name =
-          problems.theory().InvariantName(task.subject) + "." + problems.round().actions()[a];
+          InvariantName(problems.vocabulary().model(), task.subject) + "." + problems.round().actions()[a];
       result.push_back({TaskKind::kStep, task.subject, a, name, solve::Unknown{"not asked"}, 0, {}});
     }
   }

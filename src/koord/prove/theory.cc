@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "expr/substitute.h"
-#include "lang/expr_printer.h"
+#include "koord/check/spec_labels.h"
 
 namespace rondo::koord {
 
@@ -35,48 +35,12 @@ TermId Theory::PerRobot(ExprId e, const View& view) {
   return used ? all : executor_.Specification(e, view, {}, nullptr, {});
 }
 
-bool Theory::UsesOld(ExprId id) const {
-  const lang::Expr& e = model_.program->exprs[id];
-  const Ref ref = model_.RefOf(id);
-  if (e.kind == lang::ExprKind::kCall && ref.kind == RefKind::kBuiltin &&
-      static_cast<Builtin>(ref.index) == Builtin::kOld)
-    return true;
-  return std::any_of(e.args.begin(), e.args.end(), [&](ExprId arg) { return UsesOld(arg); });
-}
-
-std::string Theory::NameOf(const AssumeDef& def) const {
-  const lang::ExprPool& exprs = model_.program->exprs;
-  switch (def.kind) {
-    case AssumeKind::kInitially:
-      return "initially " + lang::PrintExpr(exprs, def.body);
-    case AssumeKind::kFact:
-      return def.name.empty() ? lang::PrintExpr(exprs, def.body) : def.name;
-    case AssumeKind::kPort:
-      break;
-  }
-  if (!def.name.empty()) return fmt::format("{}.{}", def.module, def.name);
-  // Unnamed ones are told apart by their order.
-  int number = 0;
-  int unnamed = 0;
-  for (const AssumeDef* other : model_.assumptions) {
-    if (other->kind != AssumeKind::kPort || other->module != def.module || !other->name.empty()) continue;
-    ++unnamed;
-    if (other == &def) number = unnamed;
-  }
-  return unnamed == 1 ? def.module : fmt::format("{} ({})", def.module, number);
-}
-
-std::string Theory::InvariantName(size_t i) const {
-  const InvariantDef& def = *model_.invariants[i];
-  return def.name.empty() ? fmt::format("invariant{}", i + 1) : def.name;
-}
-
 TermId Theory::Invariant(size_t i, const View& view) { return PerRobot(model_.invariants[i]->body, view); }
 
 std::vector<Assertion> Theory::Invariants(const View& view) {
   std::vector<Assertion> result;
   for (size_t i = 0; i < invariants(); ++i)
-    result.push_back({Invariant(i, view), "invariant " + InvariantName(i)});
+    result.push_back({Invariant(i, view), "invariant " + InvariantName(model_, i)});
   return result;
 }
 
@@ -172,9 +136,9 @@ std::vector<Assertion> Theory::Background() {
   const View parameters = vocabulary_.MakeView("");
   for (const AssumeDef* def : model_.assumptions) {
     if (def->kind != AssumeKind::kFact) continue;
-    result.push_back({executor_.Specification(def->body, parameters, {}, nullptr, {}), NameOf(*def)});
+    result.push_back({executor_.Specification(def->body, parameters, {}, nullptr, {}), AssumptionName(model_, *def)});
   }
-  for (const SummaryDef* def : model_.summaries) result.push_back({Summary(*def), NameOf(*def)});
+  for (const SummaryDef* def : model_.summaries) result.push_back({Summary(*def), SummaryName(*def)});
   for (size_t v = 0; v < model_.variables.size(); ++v) {
     const Variable& variable = model_.variables[v];
     if (variable.kind != VariableKind::kParam || !variable.initial.valid()) continue;
@@ -207,7 +171,7 @@ std::vector<Assertion> Theory::DeclaredValues(const View& view) {
 std::vector<Assertion> Theory::Initially(const View& view) {
   std::vector<Assertion> result;
   for (const AssumeDef* def : model_.assumptions) {
-    if (def->kind == AssumeKind::kInitially) result.push_back({PerRobot(def->body, view), NameOf(*def)});
+    if (def->kind == AssumeKind::kInitially) result.push_back({PerRobot(def->body, view), AssumptionName(model_, *def)});
   }
   return result;
 }
@@ -215,8 +179,8 @@ std::vector<Assertion> Theory::Initially(const View& view) {
 std::vector<Assertion> Theory::PortFacts(const View& view) {
   std::vector<Assertion> result;
   for (const AssumeDef* def : model_.assumptions) {
-    if (def->kind == AssumeKind::kPort && !def->when.valid() && !UsesOld(def->body)) {
-      result.push_back({PerRobot(def->body, view), NameOf(*def)});
+    if (def->kind == AssumeKind::kPort && HoldsAlways(model_, *def)) {
+      result.push_back({PerRobot(def->body, view), AssumptionName(model_, *def)});
     }
   }
   return result;
@@ -225,11 +189,11 @@ std::vector<Assertion> Theory::PortFacts(const View& view) {
 std::vector<Theory::Promise> Theory::Promises(const View& settled, const View& end, TermId robot) {
   std::vector<Promise> result;
   for (const AssumeDef* def : model_.assumptions) {
-    if (def->kind != AssumeKind::kPort || (!def->when.valid() && !UsesOld(def->body))) continue;
+    if (def->kind != AssumeKind::kPort || (HoldsAlways(model_, *def))) continue;
     const TermId condition =
         def->when.valid() ? executor_.Specification(def->when, settled, robot, nullptr, {}) : arena_.True();
     const TermId promise = executor_.Specification(def->body, end, robot, &settled, {});
-    result.push_back({def, NameOf(*def), condition, promise});
+    result.push_back({def, AssumptionName(model_, *def), condition, promise});
   }
   return result;
 }

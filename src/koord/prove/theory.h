@@ -44,13 +44,10 @@ class Theory {
   std::vector<Promise> Promises(const View& settled, const View& end, TermId robot);
 
   size_t invariants() const { return model_.invariants.size(); }
-  std::string InvariantName(size_t i) const;
   TermId Invariant(size_t i, const View& view);
   /// All invariants at `view`, each in its group `invariant NAME`.
   std::vector<solve::Assertion> Invariants(const View& view);
 
-  std::string NameOf(const AssumeDef& def) const;
-  static std::string NameOf(const SummaryDef& def) { return "summary " + def.function; }
   size_t FunctionOf(const SummaryDef& def) const;
   /// External functions that are called but have no summary.
   std::vector<std::string> Unconstrained() const;
@@ -59,7 +56,6 @@ class Theory {
   TermId PerRobot(ExprId e, const View& view);
   TermId Summary(const SummaryDef& def);
   bool CallsFunctions(ExprId e) const;
-  bool UsesOld(ExprId e) const;
 
   Vocabulary& vocabulary_;
   Executor& executor_;

@@ -135,8 +135,28 @@ struct InvariantDef {
   ExprId body;
 };
 
+enum class ExploreKind : uint8_t {
+  kValue,     // name = body
+  kChoice,    // name in body
+  kFunction,  // name(parameters) = body
+};
+struct ExploreEntry {
+  ExploreKind kind;
+  std::string name;  ///< `x`, `M.port`, `N_sys`
+  diag::Span span;   ///< of the name
+  std::vector<std::string> parameters;
+  std::vector<diag::Span> parameter_spans;
+  ExprId body;
+};
+/// What makes a program executable in finitely many ways: values of parameters, sets that ports and initial
+/// values are taken from, bodies of external functions.
+struct ExploreDef {
+  diag::Span span;
+  std::vector<ExploreEntry> entries;
+};
+
 using Item = std::variant<AgentHeader, FunctionDef, AdtDef, EnumDef, ModuleDef, Section, InitDef, EventDef,
-                          ParamDef, AssumeDef, SummaryDef, InvariantDef>;
+                          ParamDef, AssumeDef, SummaryDef, InvariantDef, ExploreDef>;
 
 /// One file, or a program with the specification beside it: items in source order.
 struct Program {

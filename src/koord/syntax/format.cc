@@ -179,6 +179,18 @@ class Formatter {
     Statement(item.span, item.name.empty() ? "invariant:" : fmt::format("invariant {}:", item.name),
               item.body);
   }
+  void Print(const ExploreDef& item) {
+    Line(item.span, "explore:");
+    ++depth_;
+    for (const ExploreEntry& e : item.entries) {
+      const char* sign = e.kind == ExploreKind::kChoice ? "in" : "=";
+      const std::string name = e.kind == ExploreKind::kFunction
+                                   ? fmt::format("{}({})", e.name, fmt::join(e.parameters, ", "))
+                                   : e.name;
+      Line(Whole(e.span, e.body), fmt::format("{} {} {}", name, sign, Text(e.body)));
+    }
+    --depth_;
+  }
   // `head body`, on two lines if it is long: behind the variables of a quantifier, or else behind the head.
   void Statement(diag::Span start, const std::string& head, ExprId body) {
     constexpr size_t kWidth = 110;

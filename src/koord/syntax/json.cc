@@ -87,6 +87,21 @@ class Writer {
     j["body"] = Ex(i.body);
     return j;
   }
+  json operator()(const ExploreDef& i) const {
+    constexpr const char* kNames[] = {"value", "choice", "function"};
+    json j = At(i.span);
+    j["item"] = "explore";
+    j["entries"] = json::array();
+    for (const ExploreEntry& e : i.entries) {
+      json one = At(e.span);
+      one["entry"] = kNames[static_cast<size_t>(e.kind)];
+      one["name"] = e.name;
+      if (e.kind == ExploreKind::kFunction) one["parameters"] = e.parameters;
+      one["body"] = Ex(e.body);
+      j["entries"].push_back(std::move(one));
+    }
+    return j;
+  }
 
  private:
   json At(diag::Span span) const {

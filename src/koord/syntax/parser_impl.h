@@ -54,6 +54,8 @@ class Parser : public lang::ExprParser {
   void ParseAssume(diag::Span start);
   void ParseSummary(diag::Span start);
   void ParseInvariant(diag::Span start);
+  void ParseExplore(diag::Span start);
+  bool ParseExploreEntry(ExploreDef& def);
   bool AcceptContinuation(std::string_view word);
   ExprId ParseSpecBody();
   void EndSpecItem();

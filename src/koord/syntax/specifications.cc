@@ -7,7 +7,7 @@ namespace rondo::koord {
 using diag::Span;
 using lang::TokenKind;
 
-// `param`, `assume`, `summary` and `invariant` are words only where such an item can start.
+// `param`, `assume`, `summary`, `invariant` and `explore` are words only where such an item can start.
 bool Parser::ParseSpecItem() {
   if (!AtKind(TokenKind::kName)) return false;
   const auto& next = Peek(1);
@@ -23,6 +23,9 @@ bool Parser::ParseSpecItem() {
   } else if ((At("invariant") || At("SafetyProp")) &&
              (name_follows || next.text == ":" || next.text == "(" || next.text == "{")) {
     ParseInvariant(start);
+  } else if (At("explore") && next.text == ":" && Peek(2).kind == TokenKind::kNewline &&
+             Peek(3).kind == TokenKind::kIndent && Peek(4).text != "pre" && Peek(4).text != "eff") {
+    ParseExplore(start);
   } else {
     return false;
   }
@@ -156,6 +159,52 @@ void Parser::ParseInvariant(Span start) {
   }
   AddItem(std::move(def), start);
   EndSpecItem();
+}
+
+// explore: {name = e | name in e | f(a, b) = e}
+void Parser::ParseExplore(Span start) {
+  ExploreDef def{start, {}};
+  Take();
+  Take();
+  Take();
+  Take();
+  while (!AtKind(TokenKind::kDedent) && !AtKind(TokenKind::kEnd)) {
+    if (!ParseExploreEntry(def)) SkipLine();
+  }
+  if (AtKind(TokenKind::kDedent)) Take();
+  AddItem(std::move(def), start);
+}
+
+bool Parser::ParseExploreEntry(ExploreDef& def) {
+  ExploreEntry entry{ExploreKind::kValue, {}, Peek().span, {}, {}, {}};
+  entry.name = ExpectName("what is fixed");
+  if (!failed() && Accept(".")) {
+    entry.span = entry.span.To(Peek().span);
+    entry.name += "." + ExpectName("the name of a port");
+  }
+  if (!failed() && Accept("(")) {
+    entry.kind = ExploreKind::kFunction;
+    while (!failed() && !At(")")) {
+      entry.parameter_spans.push_back(Peek().span);
+      entry.parameters.push_back(ExpectName("the name of a parameter"));
+      if (!Accept(",")) break;
+    }
+    Expect(")", "the parameters");
+  }
+  if (!failed() && entry.kind == ExploreKind::kValue && Accept("in"))
+    entry.kind = ExploreKind::kChoice;
+  else if (!failed())
+    Expect("=", "what is fixed");
+  if (failed()) return false;
+  entry.body = ParseSpecBody();
+  if (failed()) return false;
+  def.entries.push_back(std::move(entry));
+  const bool good = EndLine("a value");
+  for (; continuation_ > 0; --continuation_) {
+    while (!AtKind(TokenKind::kDedent) && !AtKind(TokenKind::kEnd)) SkipLine();
+    if (AtKind(TokenKind::kDedent)) Take();
+  }
+  return good || !AtKind(TokenKind::kEnd);
 }
 
 }  // namespace rondo::koord

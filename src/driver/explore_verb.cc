@@ -1,0 +1,242 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "driver/exit_status.h"
+#include "driver/exploration.h"
+#include "driver/interrupt.h"
+#include "driver/koord_load.h"
+#include "driver/run_file.h"
+#include "driver/terminal.h"
+#include "driver/verbs.h"
+
+namespace rondo::driver {
+namespace {
+
+using explore::Ending;
+
+struct Options {
+  std::string file;
+  std::string spec;
+  std::vector<size_t> robots;
+  uint32_t depth = 0;
+  uint64_t states = 100'000'000;
+  bool deadlock = false;
+  bool no_symmetry = false;
+  bool no_reduction = false;
+  bool compact = false;
+  uint64_t walks = 0;
+  uint64_t steps = 1000;
+  uint64_t seed = 1;
+  std::string save;
+  bool json = false;
+};
+
+const char* Word(const Explored& e, const Options& options) {
+  if (options.walks > 0) return e.broken ? "a run is broken" : "random walks";
+  switch (e.search.ending) {
+    case Ending::kComplete:
+      return options.compact ? "complete up to hash collisions" : "complete";
+    case Ending::kDepth:
+      return "up to the depth";
+    case Ending::kStates:
+      return "too many states";
+    case Ending::kStopped:
+      return "interrupted";
+    case Ending::kBroken:
+    case Ending::kDeadlock:
+      return "a run is broken";
+  }
+  return "";
+}
+
+std::string Count(uint64_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
+
+// Events and branches that no size reached, if all were explored completely.
+void Coverage(const koord::Model& model, const std::vector<Explored>& all, diag::Diagnostics& diagnostics) {
+  for (size_t e = 0; e < model.events.size(); ++e) {
+    if (std::any_of(all.begin(), all.end(), [&](const Explored& x) { return x.enabled[e] > 0; })) continue;
+    diagnostics
+        .Report(diag::Kind::kKoordNeverHappened, model.events[e]->span,
+                fmt::format("event `{}` was never enabled", model.events[e]->name))
+        .Under("in no reachable state");
+  }
+  for (size_t b = 0; b < all[0].branch_spans.size(); ++b) {
+    const diag::Span span = all[0].branch_spans[b];
+    if (span.begin == span.end) continue;
+    if (std::any_of(all.begin(), all.end(), [&](const Explored& x) { return x.branches[b]; })) continue;
+    const bool otherwise = b > 0 && all[0].branch_spans[b - 1].begin == span.begin;
+    diagnostics.Report(diag::Kind::kKoordNeverHappened, span,
+                       otherwise ? "the `else` of this condition was never reached"
+                                 : "this condition was never true where it was reached");
+  }
+}
+
+std::string Table(const std::vector<Explored>& all, const Options& options) {
+  std::string text;
+  for (const Explored& e : all) {
+    if (e.unusable) continue;
+    const double rate = e.search.seconds > 0 ? static_cast<double>(e.search.states) / e.search.seconds : 0;
+    const std::string size =
+        options.walks > 0
+            ? fmt::format("{}, {}", Count(e.walked, "walk"), Count(e.search.transitions, "step"))
+            : fmt::format("{}, {}, {}", Count(e.search.states, e.symmetric ? "state up to renaming" : "state"),
+                          Count(e.search.transitions, "transition"), Count(e.rounds, "round"));
+    std::string fixed = size;
+    if (const size_t at = fixed.find("state up to renamings"); at != std::string::npos)
+      fixed.replace(at, 21, "states up to renaming");
+    text += fmt::format("  N = {:<3} {:58} {:12} {:8.2f} s", e.robots, fixed, Word(e, options), e.search.seconds);
+    if (e.search.seconds > 0.5) text += fmt::format("  {:.0f} states/s", rate);
+    text += "\n";
+  }
+  return text;
+}
+
+nlohmann::json ToJson(const Explored& e, const Options& options, const koord::Model& model) {
+  nlohmann::json events = nlohmann::json::object();
+  for (size_t i = 0; i < e.enabled.size(); ++i) events[model.events[i]->name] = e.enabled[i];
+  return {{"robots", e.robots},
+          {"ending", Word(e, options)},
+          {"states", e.search.states},
+          {"transitions", e.search.transitions},
+          {"rounds", e.rounds},
+          {"symmetric", e.symmetric},
+          {"seconds", e.search.seconds},
+          {"bytes", e.search.bytes},
+          {"enabled", events},
+          {"unchecked", e.unchecked},
+          {"zero_at_start", e.zeroed},
+          {"broken", e.property.empty() ? nlohmann::json(nullptr) : nlohmann::json(e.property)}};
+}
+
+int StatusOf(const std::vector<Explored>& all, const Options& options) {
+  bool undecided = false;
+  for (const Explored& e : all) {
+    if (e.broken || e.unusable) return kRejected;
+    const bool cut = e.search.ending == Ending::kStates || e.search.ending == Ending::kStopped;
+    undecided = undecided || cut || e.stuck || !e.unchecked.empty() || (options.walks > 0 && e.walked < options.walks);
+  }
+  return undecided ? kUndecided : kEstablished;
+}
+
+int Run(const Options& options) {
+  Session session;
+  std::vector<Explored> all;
+  const auto loaded = LoadKoord({options.file, options.spec, true}, session);
+  if (!loaded && !session.diagnostics.has_errors()) return kRejected;
+  std::vector<size_t> sizes = options.robots;
+  if (loaded) {
+    const std::vector<size_t> declared = DeclaredSizes(loaded->model, session.diagnostics);
+    if (sizes.empty()) sizes = declared.empty() ? std::vector<size_t>{1, 2, 3} : declared;
+  }
+  const bool good = !session.diagnostics.has_errors();
+  ExplorationOptions exploration;
+  if (options.depth > 0) exploration.rounds = options.depth;
+  exploration.states = options.states;
+  exploration.compact = options.compact;
+  exploration.deadlocks = options.deadlock;
+  exploration.reduce = !options.no_reduction;
+  exploration.symmetry = !options.no_symmetry;
+  exploration.walks = options.walks;
+  exploration.steps = options.steps;
+  exploration.seed = options.seed;
+  if (good) {
+    ProgressLine line;
+    const InterruptScope interrupt(exploration.stop);
+    for (const size_t n : sizes) {
+      exploration.progress = [&](const explore::SearchOptions::Progress& p) {
+        line.Show(fmt::format("[N = {}] {} states, {:.0f} states/s, frontier {}, depth {}", n, p.states,
+                              static_cast<double>(p.states) / std::max(p.seconds, 1e-9), p.frontier, p.depth));
+      };
+      all.push_back(Explore(loaded->model, n, exploration, session.diagnostics));
+      // The first counterexample has the fewest robots; what cannot be run with one size cannot with another.
+      if (all.back().broken || all.back().unusable || exploration.stop.cancelled()) break;
+    }
+  }
+  const bool complete = !all.empty() && std::all_of(all.begin(), all.end(), [&](const Explored& e) {
+    return options.walks == 0 && !e.unusable && e.search.ending == Ending::kComplete && !e.broken;
+  });
+  if (complete) Coverage(loaded->model, all, session.diagnostics);
+  const int status = good ? StatusOf(all, options) : kRejected;
+  std::string saved;
+  std::string trouble;
+  for (const Explored& e : all) {
+    if (!e.run.is_array() || e.run.empty()) continue;
+    const std::string path = options.save.empty() ? DefaultRunFile(options.file, e.property) : options.save;
+    const auto written =
+        SaveRun(path, {options.file, options.spec, e.robots, e.property, "explore", e.run}, loaded->model);
+    (written.ok() ? saved : trouble) = written.ok() ? path : written.error().message;
+  }
+  if (options.json) {
+    nlohmann::json sizes_json = nlohmann::json::array();
+    for (const Explored& e : all) {
+      if (!e.unusable) sizes_json.push_back(ToJson(e, options, loaded->model));
+    }
+    nlohmann::json out{{"command", "explore"},  {"file", options.file},
+                       {"status", status},      {"explored", sizes_json},
+                       {"seed", options.seed},  {"diagnostics", DiagnosticsToJson(session.sources, session.diagnostics)}};
+    if (!saved.empty()) out["run"] = saved;
+    PrintJson(out);
+    return status;
+  }
+  if (!all.empty() && !all[0].unusable) Print(fmt::format("{}\n{}", options.file, Table(all, options)));
+  PrintDiagnostics(session.sources, session.diagnostics);
+  std::string text;
+  if (status == kEstablished) {
+    std::vector<std::string> done;
+    for (const Explored& e : all) done.push_back(fmt::format("{}", e.robots));
+    const size_t invariants = loaded->model.invariants.size();
+    const std::string what = options.walks > 0       ? "simulated at random"
+                             : options.depth > 0     ? fmt::format("explored up to {}", Count(options.depth, "round"))
+                                                     : "explored";
+    text += fmt::format("\n{}: {} hold{} for N = {}, no operation fails.\n", what, Count(invariants, "invariant"),
+                        invariants == 1 ? "s" : "", fmt::join(done, ", "));
+  }
+  if (!all.empty() && !all[0].zeroed.empty())
+    text += fmt::format("zero, false or empty at the start: {}\n", fmt::join(all[0].zeroed, ", "));
+  if (options.walks > 0) text += fmt::format("seed {}\n", options.seed);
+  if (!saved.empty()) text += fmt::format("the run is in {}: `rondo replay {}`\n", saved, saved);
+  if (!trouble.empty()) text += fmt::format("the run could not be saved: {}\n", trouble);
+  Print(text);
+  return status;
+}
+
+}  // namespace
+
+void AddExploreVerb(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("explore", "visit every state that a small team can reach");
+  verb->add_option("FILE", options->file, "a Koord program; `NAME.spec` beside it belongs to it")->required();
+  verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
+  verb->add_option("--robots", options->robots,
+                   "team sizes, such as `--robots 2 3`; default: what `explore` declares, or 1 2 3")
+      ->check(CLI::Range(size_t{1}, size_t{64}));
+  verb->add_option("--depth", options->depth, "explore no more than so many rounds")
+      ->check(CLI::Range(1U, 1'000'000'000U));
+  verb->add_option("--states", options->states, "give up beyond so many states; default: 100000000")
+      ->check(CLI::Range(uint64_t{1}, uint64_t{4'000'000'000}));
+  verb->add_flag("--deadlock", options->deadlock, "look for states in which nothing can happen any more");
+  verb->add_flag("--no-symmetry", options->no_symmetry, "count states that differ in the names of robots apart");
+  verb->add_flag("--no-reduction", options->no_reduction,
+                 "every order of the robots, one after the other (slow: to check the explorer)");
+  verb->add_flag("--compact", options->compact,
+                 "keep 64 bits of each state: less memory, but two states may be taken for one");
+  verb->add_option("--walks", options->walks, "so many random walks instead of all states");
+  verb->add_option("--steps", options->steps, "length of a random walk; default: 1000");
+  verb->add_option("--seed", options->seed, "of the random walks; default: 1");
+  verb->add_option("--save", options->save, "where to write the run that breaks a property");
+  verb->add_flag("--json", options->json, "the result as JSON on standard output");
+  verb->footer(
+      "examples:\n  rondo explore examples/koord/leader.koord --robots 8\n"
+      "  rondo explore examples/koord/mutex_naive.koord\n"
+      "  rondo explore --walks 100 --seed 7 examples/koord/addnums.koord\n\n"
+      "The `explore` section of the specification gives parameters, sensors and external functions values "
+      "(docs/language.md).\n"
+      "exit status: 0 no property is broken, 1 one is, 3 not everything was explored or checked");
+  verb->callback([options, &status] { status = Run(*options); });
+}
+
+}  // namespace rondo::driver

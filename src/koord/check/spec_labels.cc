@@ -1,0 +1,52 @@
+#include "koord/check/spec_labels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lang/expr_printer.h"
+
+namespace rondo::koord {
+
+std::string InvariantName(const Model& model, size_t i) {
+  const InvariantDef& def = *model.invariants[i];
+  return def.name.empty() ? fmt::format("invariant{}", i + 1) : def.name;
+}
+
+std::string AssumptionName(const Model& model, const AssumeDef& def) {
+  const lang::ExprPool& exprs = model.program->exprs;
+  switch (def.kind) {
+    case AssumeKind::kInitially:
+      return "initially " + lang::PrintExpr(exprs, def.body);
+    case AssumeKind::kFact:
+      return def.name.empty() ? lang::PrintExpr(exprs, def.body) : def.name;
+    case AssumeKind::kPort:
+      break;
+  }
+  if (!def.name.empty()) return fmt::format("{}.{}", def.module, def.name);
+  int number = 0;
+  int unnamed = 0;
+  for (const AssumeDef* other : model.assumptions) {
+    if (other->kind != AssumeKind::kPort || other->module != def.module || !other->name.empty()) continue;
+    ++unnamed;
+    if (other == &def) number = unnamed;
+  }
+  return unnamed == 1 ? def.module : fmt::format("{} ({})", def.module, number);
+}
+
+std::string SummaryName(const SummaryDef& def) { return "summary " + def.function; }
+
+bool UsesOld(const Model& model, ExprId id) {
+  const lang::Expr& e = model.program->exprs[id];
+  const Ref ref = model.RefOf(id);
+  if (e.kind == lang::ExprKind::kCall && ref.kind == RefKind::kBuiltin &&
+      static_cast<Builtin>(ref.index) == Builtin::kOld)
+    return true;
+  return std::any_of(e.args.begin(), e.args.end(), [&](ExprId arg) { return UsesOld(model, arg); });
+}
+
+bool HoldsAlways(const Model& model, const AssumeDef& def) {
+  return !def.when.valid() && !UsesOld(model, def.body);
+}
+
+}  // namespace rondo::koord

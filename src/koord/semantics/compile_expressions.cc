@@ -1,0 +1,311 @@
+#include "base/check.h"
+#include "expr/rational.h"
+#include "koord/semantics/compiler.h"
+
+namespace rondo::koord::semantics {
+
+using lang::ExprKind;
+using lang::TypeKind;
+
+namespace {
+
+std::string Unquoted(const std::string& text) {
+  std::string result;
+  for (size_t i = 1; i + 1 < text.size(); ++i) {
+    if (text[i] != '\\' || i + 2 >= text.size()) {
+      result += text[i];
+      continue;
+    }
+    ++i;
+    result += text[i] == 'n' ? '\n' : text[i] == 't' ? '\t' : text[i];
+  }
+  return result;
+}
+
+}  // namespace
+
+// A list literal of ints may stand where a list of floats is needed.
+void Compiler::GenAs(ExprId id, TypeId type) {
+  const lang::Expr& e = exprs_[id];
+  if (e.kind == ExprKind::kList && model_.types.Is(type, TypeKind::kList)) {
+    const TypeId element = model_.types[type].parts[0];
+    for (const ExprId item : e.args) GenAs(item, element);
+    span_ = e.span;
+    Emit(Op::kListMake, e.args.size(), Width(element));
+    return;
+  }
+  Gen(id);
+  Convert(model_.TypeOf(id), type);
+}
+
+void Compiler::Convert(TypeId from, TypeId to) {
+  if (model_.types.Is(from, TypeKind::kInt) && model_.types.Is(to, TypeKind::kFloat)) Emit(Op::kToFloat, 0);
+}
+
+uint32_t Compiler::FieldOffset(TypeId record, uint32_t field) const {
+  uint32_t offset = 0;
+  for (uint32_t i = 0; i < field; ++i) offset += Width(model_.types[record].parts[i]);
+  return offset;
+}
+
+void Compiler::Gen(ExprId id) {
+  const lang::Expr& e = exprs_[id];
+  const Ref ref = model_.RefOf(id);
+  span_ = e.span;
+  switch (e.kind) {
+    case ExprKind::kError:
+    case ExprKind::kQuantity:
+      break;
+    case ExprKind::kInt: {
+      const auto number = expr::Rational::Parse(e.text);
+      const std::string digits = number ? number->ToString() : "";
+      if (!number || digits.size() > 18) return Fail(e.span, "this number has more than 64 bits");
+      return Constant(FromInt(std::stoll(digits)));
+    }
+    case ExprKind::kFloat: {
+      const auto number = expr::Rational::Parse(e.text);
+      return Constant(FromFloat(number ? number->ToDouble() : 0));
+    }
+    case ExprKind::kString:
+      return Constant(heap_.InternText(Unquoted(e.text)));
+    case ExprKind::kBool:
+      return Constant(e.text == "true" || e.text == "True");
+    case ExprKind::kPid:
+      used_robot_ = true;
+      Emit(Op::kRobot);
+      return;
+    case ExprKind::kName:
+    case ExprKind::kField:
+    case ExprKind::kIndex:
+      switch (ref.kind) {
+        case RefKind::kVariable:
+          return ReadVariable(ref.index);
+        case RefKind::kCell:
+          Gen(e.args[1]);
+          return ReadCell(ref.index);
+        case RefKind::kPortOf:
+          Gen(exprs_[e.args[0]].args[1]);
+          return ReadCell(ref.index);
+        case RefKind::kBinding:
+          Emit(Op::kFrame, FrameOf(ref.index), Width(model_.bindings[ref.index].type));
+          return;
+        case RefKind::kMember:
+          return Constant(ref.index);
+        case RefKind::kSystemSize:
+          return Constant(FromInt(static_cast<int64_t>(layout_.robots())));
+        case RefKind::kOpaqueField:
+          Gen(e.args[0]);
+          return CallPlain(ref.index, 1, Width(model_.functions[ref.index].result));
+        case RefKind::kFunction:
+        case RefKind::kBuiltin:
+        case RefKind::kNone:
+          break;
+      }
+      if (e.kind == ExprKind::kField) return Slice(e.args[0], ref.index);
+      CHECK(e.kind == ExprKind::kIndex) << "an unresolved name got past the checker: " << e.text;
+      return Index(e);
+    case ExprKind::kCall:
+      return Call(id, e);
+    case ExprKind::kUnary:
+      return Unary(e);
+    case ExprKind::kBinary:
+      return Binary(id, e);
+    case ExprKind::kList:
+      return GenAs(id, model_.TypeOf(id));
+    case ExprKind::kTuple:
+      for (const ExprId item : e.args) Gen(item);
+      return;
+    case ExprKind::kQuantifier:
+      return Quantifier(id, e);
+  }
+  CHECK(false) << "an erroneous expression got past the checker";
+}
+
+void Compiler::Slice(ExprId base, uint32_t field) {
+  Gen(base);
+  const TypeId record = model_.TypeOf(base);
+  const uint32_t offset = FieldOffset(record, field);
+  const uint32_t width = Width(model_.types[record].parts[field]);
+  const uint32_t whole = Width(record);
+  // A member of a variable is read directly.
+  Instruction& last = code_.instructions.back();
+  const bool direct = last.op == Op::kGlobal || last.op == Op::kOwn || last.op == Op::kCell ||
+                      last.op == Op::kFrame || last.op == Op::kParam;
+  if (direct && last.b == whole) {
+    last.a += offset;
+    last.b = width;
+    return;
+  }
+  if (width != whole) Emit(Op::kSlice, offset, width, whole);
+}
+
+void Compiler::ReadVariable(size_t v) {
+  const Variable& variable = model_.variables[v];
+  const Layout::Place& place = layout_[v];
+  if (!place.exists) return Fail(span_, "a stream has no value");
+  if (variable.kind == VariableKind::kParam) {
+    Emit(Op::kParam, place.at, place.width);
+  } else if (variable.kind == VariableKind::kAllread) {
+    Emit(Op::kRow, place.at, place.width * std::max<uint32_t>(1, place.length));
+  } else if (place.own) {
+    used_robot_ = true;
+    if (place.length > 0)
+      Emit(Op::kOwnArray, place.at, place.width, place.length);
+    else
+      Emit(Op::kOwn, place.at, place.width);
+  } else if (place.length > 0) {
+    Emit(Op::kGlobalArray, place.at, place.width, place.length);
+  } else {
+    Emit(Op::kGlobal, place.at, place.width);
+  }
+}
+
+// The robot is on the stack.
+void Compiler::ReadCell(size_t v) {
+  const Layout::Place& place = layout_[v];
+  if (place.length > 0) return Fail(span_, "an array in a cell cannot be executed; use a record or a list");
+  // The robot's own cell.
+  if (code_.instructions.back().op == Op::kRobot) {
+    code_.instructions.back() = {Op::kOwn, place.at, place.width, 0};
+    return;
+  }
+  Emit(Op::kCell, place.at, place.width);
+}
+
+void Compiler::Index(const lang::Expr& e) {
+  const Ref root = model_.RefOf(e.args[0]);
+  const TypeId base = model_.TypeOf(e.args[0]);
+  if (root.kind == RefKind::kVariable && layout_[root.index].length > 0 &&
+      model_.variables[root.index].kind != VariableKind::kAllread) {
+    const Layout::Place& place = layout_[root.index];
+    Gen(e.args[1]);
+    span_ = e.span;
+    used_robot_ = used_robot_ || place.own;
+    Emit(place.own ? Op::kOwnAt : Op::kGlobalAt, place.at, place.width, place.length);
+    return;
+  }
+  Gen(e.args[0]);
+  Gen(e.args[1]);
+  span_ = e.span;
+  const lang::Type& type = model_.types[base];
+  if (type.kind != TypeKind::kList && type.kind != TypeKind::kArray) return Fail(e.span, "nothing tells its type");
+  Emit(Op::kListAt, Width(type.parts[0]));
+}
+
+void Compiler::Unary(const lang::Expr& e) {
+  Gen(e.args[0]);
+  span_ = e.span;
+  const TypeId type = model_.TypeOf(e.args[0]);
+  if (e.text == "not")
+    Emit(Op::kNot);
+  else if (model_.types.Is(type, TypeKind::kInt))
+    Emit(Op::kNegInt);
+  else
+    Emit(model_.types.Is(type, TypeKind::kFloat) ? Op::kNegFloat : Op::kNegPos);
+}
+
+void Compiler::Binary(ExprId id, const lang::Expr& e) {
+  if (e.text == "in" || e.text == "not in") {
+    Membership(e);
+    if (e.text == "not in") Emit(Op::kNot);
+    return;
+  }
+  if (e.text == "and" || e.text == "or" || e.text == "implies") return Junction(e);
+  if (e.text == "==" || e.text == "!=" || e.text[0] == '<' || e.text[0] == '>') return Comparison(e);
+  Arithmetic(id, e);
+}
+
+void Compiler::Junction(const lang::Expr& e) {
+  Gen(e.args[0]);
+  if (e.text == "implies") Emit(Op::kNot);
+  const size_t decided = Emit(e.text == "and" ? Op::kJumpUnless : Op::kJumpIf);
+  Gen(e.args[1]);
+  const size_t out = Emit(Op::kJump);
+  Patch(decided);
+  Constant(e.text != "and");
+  Patch(out);
+}
+
+void Compiler::Comparison(const lang::Expr& e) {
+  const TypeId left = model_.TypeOf(e.args[0]);
+  const TypeId right = model_.TypeOf(e.args[1]);
+  const bool floats = model_.types.Is(left, TypeKind::kFloat) || model_.types.Is(right, TypeKind::kFloat);
+  // An empty list literal has the type of the other side.
+  const bool untyped = model_.types.HasVariable(left);
+  const TypeId type = floats ? model_.types.real() : untyped ? right : left;
+  const bool swap = e.text[0] == '>';
+  GenAs(e.args[swap ? 1 : 0], type);
+  GenAs(e.args[swap ? 0 : 1], type);
+  span_ = e.span;
+  if (e.text == "==" || e.text == "!=") {
+    Emit(Op::kEqual, Width(type));
+    if (e.text == "!=") Emit(Op::kNot);
+    return;
+  }
+  const bool strict = e.text.size() == 1;
+  if (floats || model_.types.Is(type, TypeKind::kFloat))
+    Emit(strict ? Op::kLessFloat : Op::kLessEqualFloat);
+  else
+    Emit(strict ? Op::kLessInt : Op::kLessEqualInt);
+}
+
+void Compiler::Arithmetic(ExprId id, const lang::Expr& e) {
+  const auto& types = model_.types;
+  const TypeId type = model_.TypeOf(id);
+  if (types.Is(type, TypeKind::kString)) {
+    for (const ExprId arg : e.args) {
+      Gen(arg);
+      if (types.Is(model_.TypeOf(arg), TypeKind::kString)) continue;
+      logged_.push_back(model_.TypeOf(arg));
+      Emit(Op::kShow, logged_.size() - 1, Width(model_.TypeOf(arg)));
+    }
+    Emit(Op::kConcatenate);
+    return;
+  }
+  const char op = e.text[0];
+  if (types.Is(type, TypeKind::kRecord)) {
+    for (const ExprId arg : e.args) {
+      Gen(arg);
+      if (types.Is(model_.TypeOf(arg), TypeKind::kRecord)) continue;
+      Convert(model_.TypeOf(arg), types.real());
+      Emit(Op::kSplat);
+    }
+    span_ = e.span;
+    Emit(op == '+' ? Op::kAddPos : op == '-' ? Op::kSubPos : op == '*' ? Op::kMulPos : Op::kDivPos);
+    return;
+  }
+  for (const ExprId arg : e.args) GenAs(arg, type);
+  span_ = e.span;
+  if (types.Is(type, TypeKind::kInt)) {
+    Emit(op == '+'   ? Op::kAddInt
+         : op == '-' ? Op::kSubInt
+         : op == '*' ? Op::kMulInt
+         : op == '/' ? Op::kDivInt
+                     : Op::kModInt);
+    return;
+  }
+  Emit(op == '+' ? Op::kAddFloat : op == '-' ? Op::kSubFloat : op == '*' ? Op::kMulFloat : Op::kDivFloat);
+}
+
+void Compiler::Membership(const lang::Expr& e) {
+  const lang::Expr& set = exprs_[e.args[1]];
+  const Ref ref = model_.RefOf(e.args[1]);
+  if (ref.kind == RefKind::kBuiltin && static_cast<Builtin>(ref.index) == Builtin::kRect) {
+    Gen(e.args[0]);
+    Gen(set.args[1]);
+    Gen(set.args[2]);
+    Emit(Op::kInRect);
+    return;
+  }
+  if (set.kind == ExprKind::kName && ref.kind == RefKind::kNone) {
+    Gen(e.args[0]);
+    Emit(Op::kIsRobot);
+    return;
+  }
+  const TypeId element = model_.types[model_.TypeOf(e.args[1])].parts[0];
+  Gen(e.args[1]);
+  GenAs(e.args[0], element);
+  Emit(Op::kListContains, Width(element));
+}
+
+}  // namespace rondo::koord::semantics

@@ -1,0 +1,291 @@
+#include "koord/semantics/team.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "koord/check/spec_labels.h"
+#include "koord/semantics/values.h"
+
+namespace rondo::koord::semantics {
+
+using diag::Kind;
+using lang::TypeKind;
+
+namespace {
+
+bool Stops(const std::vector<Stmt>& body) {
+  return std::any_of(body.begin(), body.end(), [](const Stmt& s) {
+    return s.kind == StmtKind::kStop || Stops(s.body) || Stops(s.orelse);
+  });
+}
+
+}  // namespace
+
+std::unique_ptr<Team> Team::Make(const Model& model, const TeamOptions& options,
+                                 diag::Diagnostics& diagnostics) {
+  std::unique_ptr<Team> team(new Team(model));
+  if (!team->Parameters(options, diagnostics) || !team->Compile(options, diagnostics)) return nullptr;
+  return team;
+}
+
+// Parameters, in the order of their declaration, and the lengths of arrays.
+bool Team::Parameters(const TeamOptions& options, diag::Diagnostics& diagnostics) {
+  lengths_.assign(model_.variables.size(), 0);
+  const Layout flat(model_, options.robots, lengths_);
+  params_.assign(flat.param_words(), 0);
+  const size_t before = diagnostics.errors();
+  const auto evaluate = [&](ExprId e, TypeId type) -> std::optional<std::vector<Word>> {
+    Code code;
+    Compiler compiler(model_, flat, heap_, code);
+    const uint32_t entry = compiler.Expression(e, type);
+    const auto bad = compiler.TakeUnsupported();
+    if (bad) {
+      diagnostics.Report(Kind::kKoordNotExecutable, bad->span, bad->reason);
+      return std::nullopt;
+    }
+    Machine machine(code, flat, heap_);
+    machine.params() = params_;
+    machine.marks().resize(compiler.branches().size());
+    std::vector<Word> nothing(flat.words());
+    machine.SetMemory(nothing.data());
+    if (!compiler.externals().empty()) {
+      diagnostics.Report(Kind::kKoordNotExecutable, model_.program->exprs[e].span,
+                         "this value needs a function that has no body");
+      return std::nullopt;
+    }
+    if (!machine.Run(entry, 0, false)) {
+      diagnostics.Report(Kind::kKoordFault, machine.fault_span(), std::string(Describe(machine.fault())));
+      return std::nullopt;
+    }
+    return std::vector<Word>(machine.result().begin(), machine.result().end());
+  };
+  for (size_t v = 0; v < model_.variables.size(); ++v) {
+    const Variable& variable = model_.variables[v];
+    if (variable.kind != VariableKind::kParam) continue;
+    std::optional<std::vector<Word>> value;
+    const auto fixed = options.params.find(v);
+    const auto explored = model_.exploration.values.find(v);
+    if (fixed != options.params.end()) {
+      value = fixed->second;
+    } else if (variable.initial.valid()) {
+      value = evaluate(variable.initial, variable.type);
+    } else if (explored != model_.exploration.values.end()) {
+      value = evaluate(explored->second, variable.type);
+    } else {
+      diagnostics
+          .Report(Kind::kKoordNotExecutable, variable.span,
+                  fmt::format("parameter `{}` has no value", variable.name))
+          .Help(fmt::format("give it one: `explore:` and, in the block below, `{} = ...`", variable.name));
+    }
+    if (value) std::copy(value->begin(), value->end(), params_.begin() + flat[v].at);
+  }
+  for (size_t v = 0; v < model_.variables.size() && diagnostics.errors() == before; ++v) {
+    const Variable& variable = model_.variables[v];
+    if (!model_.types.Is(variable.type, TypeKind::kArray) || variable.kind == VariableKind::kParam) continue;
+    const auto length = variable.length.valid() ? evaluate(variable.length, model_.types.integer()) : std::nullopt;
+    if (variable.kind == VariableKind::kAllread || !length || ToInt((*length)[0]) < 1 ||
+        ToInt((*length)[0]) > 100'000) {
+      diagnostics.Report(Kind::kKoordNotExecutable, variable.span,
+                         fmt::format("array `{}` has no length that can be executed", variable.name));
+      continue;
+    }
+    lengths_[v] = static_cast<uint32_t>((*length)[0]);
+  }
+  return diagnostics.errors() == before;
+}
+
+bool Team::Compile(const TeamOptions& options, diag::Diagnostics& diagnostics) {
+  const size_t before = diagnostics.errors();
+  layout_ = std::make_unique<Layout>(model_, options.robots, lengths_);
+  Compiler compiler(model_, *layout_, heap_, code_);
+  const auto refuse = [&] {
+    if (const auto bad = compiler.TakeUnsupported())
+      diagnostics.Report(Kind::kKoordNotExecutable, bad->span, "this cannot be executed").Under(bad->reason);
+  };
+  for (const EventDef* def : model_.events) {
+    EventCode event{def, 0, 0, def->urgent, false};
+    if (def->pre.valid()) event.guard = compiler.Formula(def->pre);
+    refuse();
+    event.body = compiler.Statements(def->body);
+    event.locks = compiler.locks();
+    refuse();
+    robots_stop_ = robots_stop_ || Stops(def->body);
+    events_.push_back(event);
+  }
+  for (const InitDef* def : model_.inits) {
+    inits_.push_back(compiler.Statements(def->body));
+    robots_stop_ = robots_stop_ || Stops(def->body);
+    refuse();
+  }
+  for (size_t v = 0; v < model_.variables.size(); ++v) {
+    const Variable& variable = model_.variables[v];
+    if (variable.kind == VariableKind::kParam) continue;
+    has_sensors_ = has_sensors_ || (variable.kind == VariableKind::kSensor && variable.function < 0);
+    if (variable.initial.valid()) declared_.push_back({v, compiler.Initial(v, variable.initial)});
+    refuse();
+    const auto choice = model_.exploration.choices.find(v);
+    if (choice == model_.exploration.choices.end()) continue;
+    const lang::Expr& list = model_.program->exprs[choice->second];
+    choices_[v] = compiler.Expression(choice->second, model_.TypeOf(choice->second));
+    if (list.kind == lang::ExprKind::kList && list.args.empty()) {
+      diagnostics.Report(Kind::kKoordNotExecutable, list.span,
+                         fmt::format("there is no value for `{}`", variable.name));
+    }
+    refuse();
+  }
+  Specification(compiler);
+  refuse();
+  for (const size_t f : compiler.externals()) {
+    if (options.hosted && options.hosted(f)) continue;
+    const Function& function = model_.functions[f];
+    diagnostics
+        .Report(Kind::kKoordNotExecutable, function.span, fmt::format("`{}` has no body", function.name))
+        .Help(fmt::format("give it one: `explore:` and, in the block below, `{}({}) = ...`", function.name,
+                          fmt::join(function.parameter_names, ", ")));
+  }
+  for (size_t v = 0; v < model_.variables.size(); ++v) {
+    const Variable& variable = model_.variables[v];
+    const auto has = [&](const std::vector<InitialCode>& list) {
+      return std::any_of(list.begin(), list.end(), [&](const InitialCode& i) { return i.variable == v; });
+    };
+    if (variable.kind == VariableKind::kParam || variable.kind == VariableKind::kSensor || !(*layout_)[v].exists)
+      continue;
+    if (!has(declared_) && !has(derived_) && !choices_.contains(v)) zeroed_.push_back(v);
+  }
+  for (const auto& [s, why] : compiler.unchecked_summaries())
+    unchecked_.push_back({SummaryName(*model_.summaries[s]), why.span, why.reason});
+  branches_ = compiler.branches();
+  logged_ = compiler.logged();
+  heap_.Pin();
+  machine_ = std::make_unique<Machine>(code_, *layout_, heap_);
+  machine_->params() = params_;
+  machine_->marks().resize(branches_.size());
+  machine_->SetShow([this](size_t type, std::span<const Word> value) { return ShowLogged(type, value); });
+  return diagnostics.errors() == before;
+}
+
+std::optional<FormulaCode> Team::CompileFormula(Compiler& compiler, std::string name, diag::Span span,
+                                                ExprId e) {
+  const uint32_t entry = compiler.Formula(e);
+  const bool per_robot = compiler.used_robot();
+  if (const auto bad = compiler.TakeUnsupported()) {
+    unchecked_.push_back({std::move(name), bad->span, bad->reason});
+    return std::nullopt;
+  }
+  return FormulaCode{std::move(name), span, entry, per_robot};
+}
+
+void Team::Specification(Compiler& compiler) {
+  const auto add = [&](std::vector<FormulaCode>& list, std::string name, diag::Span span, ExprId e) {
+    if (auto formula = CompileFormula(compiler, std::move(name), span, e)) list.push_back(std::move(*formula));
+  };
+  for (size_t i = 0; i < model_.invariants.size(); ++i)
+    add(invariants_, InvariantName(model_, i), model_.invariants[i]->span, model_.invariants[i]->body);
+  for (const AssumeDef* def : model_.assumptions) {
+    const std::string name = AssumptionName(model_, *def);
+    switch (def->kind) {
+      case AssumeKind::kFact:
+        add(facts_, name, def->span, def->body);
+        break;
+      case AssumeKind::kInitially:
+        Derive(compiler, def->body);
+        add(initially_, name, def->span, def->body);
+        break;
+      case AssumeKind::kPort: {
+        if (HoldsAlways(model_, *def)) {
+          add(port_facts_, name, def->span, def->body);
+          break;
+        }
+        PromiseCode promise{name, def->span, 0, 0};
+        if (def->when.valid()) promise.when = compiler.Formula(def->when);
+        promise.always = compiler.Formula(def->body);
+        if (const auto bad = compiler.TakeUnsupported())
+          unchecked_.push_back({name, bad->span, bad->reason});
+        else
+          promises_.push_back(std::move(promise));
+        break;
+      }
+    }
+  }
+}
+
+// `v == e`, as a part of `assume initially`, gives v its value if nothing else does.
+void Team::Derive(Compiler& compiler, ExprId id) {
+  const lang::Expr& e = model_.program->exprs[id];
+  if (e.kind != lang::ExprKind::kBinary) return;
+  if (e.text == "and") {
+    for (const ExprId arg : e.args) Derive(compiler, arg);
+    return;
+  }
+  if (e.text != "==") return;
+  for (size_t side = 0; side < 2; ++side) {
+    const ExprId target = e.args[side];
+    const Ref ref = model_.RefOf(target);
+    const lang::Expr& t = model_.program->exprs[target];
+    const bool cell = ref.kind == RefKind::kCell && model_.program->exprs[t.args[1]].kind == lang::ExprKind::kPid;
+    if ((ref.kind != RefKind::kVariable && !cell) || t.kind == lang::ExprKind::kCall) continue;
+    const Variable& variable = model_.variables[ref.index];
+    const bool known = variable.initial.valid() || model_.exploration.choices.contains(ref.index) ||
+                       std::any_of(derived_.begin(), derived_.end(),
+                                   [&](const InitialCode& i) { return i.variable == ref.index; });
+    if (known || variable.kind == VariableKind::kSensor || variable.kind == VariableKind::kParam) continue;
+    if (variable.kind == VariableKind::kAllread && !cell) continue;
+    const uint32_t entry = compiler.Initial(ref.index, e.args[1 - side]);
+    if (compiler.TakeUnsupported() || (compiler.used_robot() && !variable.PerRobot())) continue;
+    derived_.push_back({ref.index, entry});
+    return;
+  }
+}
+
+bool Team::Holds(const FormulaCode& formula, size_t* robot) {
+  for (size_t r = 0; r < (formula.per_robot ? robots() : 1); ++r) {
+    if (machine_->RunFormula(formula.entry, r)) continue;
+    if (robot != nullptr) *robot = r;
+    return false;
+  }
+  return true;
+}
+
+std::string Team::ShowLogged(size_t type, std::span<const Word> value) const {
+  if (model_.types.Is(logged_[type], TypeKind::kString)) return heap_.Text(value[0]);
+  return Show(model_.types, heap_, logged_[type], value);
+}
+
+std::string Team::ShowVariable(std::span<const Word> state, size_t v, size_t robot) const {
+  const Layout::Place& place = (*layout_)[v];
+  const uint32_t at = layout_->Address(v, robot);
+  if (place.length == 0) return Show(model_.types, heap_, TypeOfVariable(v), state.subspan(at, place.width));
+  std::string text;
+  const TypeId item = model_.types[TypeOfVariable(v)].parts[0];
+  for (uint32_t i = 0; i < place.length; ++i)
+    text += (i == 0 ? "" : ", ") + Show(model_.types, heap_, item, state.subspan(at + i * place.width, place.width));
+  return "[" + text + "]";
+}
+
+std::string Team::NameOf(size_t v, size_t robot) const {
+  const Variable& variable = model_.variables[v];
+  if (!variable.PerRobot()) return variable.name;
+  if (variable.module.empty()) return fmt::format("{}[{}]", variable.name, robot);
+  return fmt::format("{}[{}]{}", variable.module, robot, variable.name.substr(variable.module.size()));
+}
+
+void Team::Collect(std::span<const std::span<const Word>> states) {
+  for (const auto state : states) {
+    for (size_t v = 0; v < model_.variables.size(); ++v) {
+      const Layout::Place& place = (*layout_)[v];
+      if (!place.exists || model_.variables[v].kind == VariableKind::kParam) continue;
+      TypeId type = TypeOfVariable(v);
+      if (place.length > 0) type = model_.types[type].parts[0];
+      for (size_t r = 0; r < (place.own ? robots() : 1); ++r) {
+        for (uint32_t i = 0; i < std::max<uint32_t>(1, place.length); ++i) {
+          const size_t at = layout_->Address(v, r) + i * place.width;
+          MarkHandles(model_.types, heap_, type, state.subspan(at, place.width));
+        }
+      }
+    }
+  }
+  heap_.Sweep();
+}
+
+}  // namespace rondo::koord::semantics
