@@ -127,7 +127,7 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
                  diag::Diagnostics& diagnostics) {
   Explored explored;
   explored.robots = robots;
-  const auto team = Team::Make(model, {robots, options.params, {}}, diagnostics);
+  const auto team = Team::Make(model, {robots, options.params, options.choices, {}}, diagnostics);
   if (!team) {
     explored.unusable = true;
     return explored;

@@ -26,6 +26,7 @@ struct ExplorationOptions {
   uint64_t steps = 1000;
   uint64_t seed = 1;
   std::map<size_t, std::vector<koord::semantics::Word>> params;
+  std::map<size_t, std::vector<koord::semantics::Word>> choices;  ///< by variable, where none are declared
   std::function<void(const explore::SearchOptions::Progress&)> progress;
   base::StopToken stop;
 };

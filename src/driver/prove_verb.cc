@@ -9,6 +9,7 @@
 #include "driver/motion.h"
 #include "driver/motion_prove.h"
 #include "driver/prove_report.h"
+#include "driver/reach.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "koord/check/check.h"
@@ -31,6 +32,7 @@ struct Options {
   std::vector<std::string> admitted;
   std::string certificates;
   std::string svg;
+  uint32_t reach = 0;
   bool no_certify = false;
   bool no_cache = false;
   bool json = false;
@@ -93,9 +95,23 @@ int Run(const Options& options) {
     report = koord::Prove(model, prove, session.diagnostics);
   }
   if (report.rows.empty()) return finish_early(kRejected);
+  std::vector<Reached> reached;
+  if (options.reach > 0) {
+    ProgressLine line;
+    ExplorationOptions exploration;
+    const InterruptScope interrupt(exploration.stop);
+    exploration.progress = [&](const explore::SearchOptions::Progress& p) {
+      line.Show(fmt::format("[reach] {} states, frontier {}, depth {}", p.states, p.frontier, p.depth));
+    };
+    reached = SearchWitnesses(model, report, options.reach, options.file, options.spec, exploration,
+                              session.diagnostics);
+  }
   const int status = StatusOf(report);
   if (options.json) {
-    PrintJson(ProveJson(session, options.file, &report, status));
+    nlohmann::json json = ProveJson(session, options.file, &report, status);
+    for (const Reached& r : reached)
+      json["reach"].push_back({{"invariant", r.invariant}, {"found", r.found}, {"text", r.text}, {"run", r.run}});
+    PrintJson(json);
     return status;
   }
   Print(ProveHeader(options.file, report, prove, options.no_cache ? 0 : caching.hits()));
@@ -104,6 +120,7 @@ int Run(const Options& options) {
     Print("\n");
     PrintDiagnostics(session.sources, session.diagnostics);
   }
+  for (const Reached& r : reached) Print(fmt::format("\nsearch: {}\n", r.text));
   Print(ProveSummary(report, prove, status));
   return status;
 }
@@ -133,7 +150,7 @@ void Refuse(const CLI::App& verb, std::initializer_list<const char*> names, cons
 
 int Dispatch(Options& options, const CLI::App& verb) {
   if (IsMotionFile(options.files[0])) {
-    Refuse(verb, {"--spec", "--robots", "--cross-check"}, "choreographies");
+    Refuse(verb, {"--spec", "--robots", "--cross-check", "--reach"}, "choreographies");
     return ProveMotion(ToMotionOptions(options));
   }
   Refuse(verb, {"--option", "--certificates", "--svg", "--no-certify"}, "Koord programs");
@@ -170,6 +187,9 @@ void AddProveVerb(CLI::App& app, int& status) {
   verb->add_option(
       "--svg", options->svg,
       "draw the scene of the first collision or region that fails: from above and from the side");
+  verb->add_option("--reach", options->reach,
+                   "for what is not inductive: search so many rounds for a run that violates it")
+      ->check(CLI::Range(1U, 1'000'000U));
   verb->add_flag("--no-certify", options->no_certify,
                  "do not write and check certificates of choreographies");
   verb->add_flag("--no-cache", options->no_cache, "neither use nor fill the proof cache");

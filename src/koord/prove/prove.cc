@@ -213,8 +213,8 @@ class Prover {
   void MakeRows(Problems& problems) {
     const std::vector<std::string>& actions = problems.round().actions();
     for (size_t i = 0; i < problems.theory().invariants(); ++i)
-      report_.rows.push_back({InvariantName(model_, i), {}, {}, {}});
-    Row defined{"well-defined", {}, {}, {}};
+      report_.rows.push_back({InvariantName(model_, i), {}, {}, {}, {}});
+    Row defined{"well-defined", {}, {}, {}, {}};
     for (const Task& task : tasks_) {
       if (task.kind == TaskKind::kInitially)
         report_.rows[task.subject].cells.push_back(MakeCell(task, "initially"));

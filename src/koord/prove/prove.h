@@ -9,6 +9,7 @@
 
 #include "base/stop.h"
 #include "diag/diagnostic.h"
+#include "expr/value.h"
 #include "koord/check/model.h"
 #include "solve/solver.h"
 
@@ -46,12 +47,29 @@ enum class Verdict : uint8_t {
   kConditional,  ///< its proof uses an invariant that is not proved
 };
 
+/// A counterexample as values: a state and, unless it is an initial one, a round from it.
+struct WitnessState {
+  int64_t robots = 0;
+  bool initial = false;
+  bool moved = false;  ///< the environment moved
+  struct Value {
+    size_t variable;
+    int64_t robot;  ///< -1: shared, or a parameter
+    expr::Value start;
+    std::optional<expr::Value> end;
+  };
+  std::vector<Value> values;
+  std::vector<int64_t> stopped;                        ///< robots that had stopped at the start
+  std::vector<std::pair<int64_t, size_t>> actions;     ///< robot, and its action; 0: it skips
+};
+
 /// An invariant, or (the last row) the definedness of every operation.
 struct Row {
   std::string name;
   std::vector<Cell> cells;
   Verdict verdict = Verdict::kUnknown;
   std::string because;
+  std::optional<WitnessState> witness;  ///< of what failed; confirmed
 };
 
 struct Report {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "koord/check/spec_labels.h"
+#include "koord/prove/witness_replay.h"
 
 namespace rondo::koord {
 
@@ -145,6 +146,22 @@ void Reporter::FailedInvariant(size_t i) {
 }
 
 void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
+  const auto index = static_cast<size_t>(
+      std::find(model_.invariants.begin(), model_.invariants.end(), &def) - model_.invariants.begin());
+  const WitnessReplay replay = ReplayWitness(model_, index, witness.state);
+  if (replay.outcome == ReplayOutcome::kDiffers) {
+    report_.disagreement = true;
+    row.verdict = Verdict::kUnknown;
+    row.because = "the counterexample does not replay: " + replay.why;
+    diagnostics_
+        .Report(Kind::kKoordDisagreement, def.span,
+                fmt::format("the solver's counterexample of `{}` is not a round of the program", row.name))
+        .Under(replay.why)
+        .Note(witness.table)
+        .Help("this is a bug of Rondo's");
+    return;
+  }
+  row.witness = witness.state;
   const Span required = model_.program->exprs[def.body].span;
   const std::string size = fmt::format("N_sys = {}", witness.robots);
   const std::optional<size_t> action = witness.action;
@@ -175,7 +192,12 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
   report.Note(fmt::format("one round that breaks it, from {} ({}):\n{}",
                           witness.reachable ? "an initial state" : "a state that satisfies every invariant",
                           size, witness.table));
-  if (!witness.reachable) report.Note("this state may be unreachable: the induction could not exclude it");
+  report.Note(replay.outcome == ReplayOutcome::kReplayed ? "replayed: the program makes this round"
+                                                         : "not replayed: " + replay.why);
+  if (!witness.reachable)
+    report.Note(
+        "this state may be unreachable: the induction could not exclude it; `rondo prove --reach 6` looks for "
+        "a run to it");
   if (witness.environment) {
     report.Help("say what the controller guarantees: `assume M when ... always ...`");
   } else if (!witness.reachable) {

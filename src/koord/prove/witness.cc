@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <set>
 
 #include "expr/substitute.h"
 #include "koord/prove/text_table.h"
@@ -40,10 +41,11 @@ class Storyteller {
   std::vector<TermId> Wanted(bool initial) {
     ForEachValue(initial, [&](size_t, bool, TermId, TermId term) { wanted_.push_back(term); });
     Round& round = problems_.round();
+    for (const TermId robot : robots_) wanted_.push_back(robot);
     if (!initial) {
       wanted_.push_back(round.moved());
       for (const TermId robot : robots_) {
-        wanted_.push_back(robot);
+        wanted_.push_back(arena_.Select(round.start().stopped, robot));
         for (size_t a = 0; a < round.actions().size(); ++a) {
           wanted_.push_back(round.Acts(robot, a));
           for (const ReadRecord& read : round.EffectOf(a, robot).reads) {
@@ -55,6 +57,40 @@ class Storyteller {
       }
     }
     return wanted_;
+  }
+
+  WitnessState State(const solve::Sat& sat, bool initial, int64_t robots) {
+    WitnessState state;
+    state.robots = robots;
+    state.initial = initial;
+    state.moved = !initial && Moved(sat);
+    Round& round = problems_.round();
+    const auto number = [&](TermId robot) -> int64_t {
+      const std::string text = Show(sat, robot);
+      return text.empty() || text.size() > 9 || !std::all_of(text.begin(), text.end(), ::isdigit)
+                 ? -1
+                 : std::stoll(text);
+    };
+    std::set<std::pair<size_t, int64_t>> seen;
+    ForEachValue(initial, [&](size_t v, bool end, TermId robot, TermId term) {
+      const auto it = sat.values.find(term);
+      if (it == sat.values.end()) return;
+      const int64_t r = robot.valid() ? number(robot) : -1;
+      if (!end && seen.insert({v, r}).second) state.values.push_back({v, r, it->second, {}});
+      for (WitnessState::Value& value : state.values) {
+        if (end && value.variable == v && value.robot == r) value.end = it->second;
+      }
+    });
+    std::set<int64_t> told;
+    for (const TermId robot : robots_) {
+      const int64_t r = number(robot);
+      if (initial || !told.insert(r).second) continue;
+      if (IsTrue(sat, arena_.Select(round.start().stopped, robot))) state.stopped.push_back(r);
+      for (size_t a = 0; a < round.actions().size(); ++a) {
+        if (IsTrue(sat, round.Acts(robot, a))) state.actions.emplace_back(r, a);
+      }
+    }
+    return state;
   }
 
   bool Moved(const solve::Sat& sat) const { return IsTrue(sat, problems_.round().moved()); }
@@ -303,7 +339,7 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::option
     if (!found) return std::nullopt;
     return Witness{action,    found->confirmed && !problems.uses_dist(),
                    reachable, !initial && storyteller.Moved(found->sat),
-                   n,         storyteller.Tell(found->sat, initial)};
+                   n,         storyteller.Tell(found->sat, initial), storyteller.State(found->sat, initial, n)};
   };
   if (initial) return attempt(problems.Initially(invariant), true);
   auto witness = attempt(problems.Step(invariant, *action, false), false);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "koord/prove/problem.h"
+#include "koord/prove/prove.h"
 
 namespace rondo::koord {
 
@@ -16,6 +17,7 @@ struct Witness {
   bool environment = false;  ///< the environment moved in it
   int64_t robots = 0;
   std::string table;  ///< who did, read and wrote what; several lines
+  WitnessState state;
 };
 
 /// Looks for a witness that invariant `i` fails in a round whose first action is `action`, or, with no

@@ -17,7 +17,7 @@ Environment::Environment(Team& team, diag::Diagnostics& diagnostics) : team_(tea
     const bool sensor = variable.kind == VariableKind::kSensor;
     if (sensor) {
       const bool finite = model.types.Is(variable.type, TypeKind::kBool) || model.types.Is(variable.type, TypeKind::kEnum);
-      if (!finite && !team.choices().contains(v)) {
+      if (!finite && !team.choices().contains(v) && !team.given_choices().contains(v)) {
         diagnostics
             .Report(diag::Kind::kKoordNotExecutable, variable.span,
                     fmt::format("nothing says which values `{}` can take", variable.name))
@@ -26,7 +26,8 @@ Environment::Environment(Team& team, diag::Diagnostics& diagnostics) : team_(tea
       sensors_.push_back({v, team.layout()[v].at, team.layout()[v].width});
       tuple_ += team.layout()[v].width;
     }
-    if (variable.initial.valid() || (!sensor && !team.choices().contains(v))) continue;
+    if (variable.initial.valid() || (!sensor && !team.choices().contains(v) && !team.given_choices().contains(v)))
+      continue;
     for (size_t r = 0; r < (variable.PerRobot() ? team.robots() : 1); ++r) starts_.push_back({v, r});
   }
   sets_.resize(team.robots());
@@ -38,6 +39,10 @@ bool Environment::Values(size_t v, size_t robot, std::vector<Word>& values) {
   const Model& model = team_.model();
   const auto choice = team_.choices().find(v);
   values.clear();
+  if (const auto given = team_.given_choices().find(v); given != team_.given_choices().end()) {
+    values = given->second;
+    return true;
+  }
   if (choice == team_.choices().end()) {
     const lang::Type& type = model.types[model.variables[v].type];
     const size_t count = type.kind == TypeKind::kEnum ? type.fields.size() : 2;

@@ -134,6 +134,9 @@ bool Team::Compile(const TeamOptions& options, diag::Diagnostics& diagnostics) {
     }
     refuse();
   }
+  for (const auto& [v, words] : options.choices) {
+    if (!choices_.contains(v) && !model_.variables[v].initial.valid()) given_choices_[v] = words;
+  }
   Specification(compiler);
   refuse();
   for (const size_t f : compiler.externals()) {
@@ -151,7 +154,8 @@ bool Team::Compile(const TeamOptions& options, diag::Diagnostics& diagnostics) {
     };
     if (variable.kind == VariableKind::kParam || variable.kind == VariableKind::kSensor || !(*layout_)[v].exists)
       continue;
-    if (!has(declared_) && !has(derived_) && !choices_.contains(v)) zeroed_.push_back(v);
+    if (!has(declared_) && !has(derived_) && !choices_.contains(v) && !given_choices_.contains(v))
+      zeroed_.push_back(v);
   }
   for (const auto& [s, why] : compiler.unchecked_summaries())
     unchecked_.push_back({SummaryName(*model_.summaries[s]), why.span, why.reason});

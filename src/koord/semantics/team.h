@@ -49,6 +49,8 @@ struct TeamOptions {
   size_t robots = 1;
   /// Values of parameters, as words, instead of those in the program.
   std::map<size_t, std::vector<Word>> params;
+  /// Values that a variable may take, one after the other, where `explore` declares none.
+  std::map<size_t, std::vector<Word>> choices;
   /// External functions that the host computes.
   std::function<bool(size_t)> hosted;
 };
@@ -76,6 +78,7 @@ class Team {
   const std::vector<InitialCode>& derived() const { return derived_; }
   /// By variable: the code that pushes the list of values that `explore` declares.
   const std::map<size_t, uint32_t>& choices() const { return choices_; }
+  const std::map<size_t, std::vector<Word>>& given_choices() const { return given_choices_; }
   const std::vector<FormulaCode>& invariants() const { return invariants_; }
   const std::vector<FormulaCode>& initially() const { return initially_; }
   const std::vector<FormulaCode>& facts() const { return facts_; }
@@ -120,6 +123,7 @@ class Team {
   std::vector<InitialCode> declared_;
   std::vector<InitialCode> derived_;
   std::map<size_t, uint32_t> choices_;
+  std::map<size_t, std::vector<Word>> given_choices_;
   std::vector<FormulaCode> invariants_;
   std::vector<FormulaCode> initially_;
   std::vector<FormulaCode> facts_;
