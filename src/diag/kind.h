@@ -136,6 +136,9 @@ enum class Kind : uint8_t {
   kKoordStuck,
   kKoordDeadlock,
   kKoordNeverHappened,
+  // Fleets.
+  kFleetSyntax,
+  kFleetValue,
   kCount_,  // not a kind
 };
 

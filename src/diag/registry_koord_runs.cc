@@ -88,6 +88,17 @@ constexpr KindInfo kTable[] = {
      "local:\n    int n = 0\nStep:\n    pre: n == 0\n    eff:\n        n = 1\nBack:\n    pre: n == 2\n    eff:\n     "
      "   n = 0\nexplore:\n    N_sys = 1\n",
      "explore"},
+    {Kind::kFleetSyntax, "fleet-syntax", Severity::kError, "a fleet file that is not TOML",
+     "The fleet file beside the program, `NAME.toml`, names the robots of a simulation, their models and their "
+     "world. It is\n"
+     "written in TOML (toml.io).",
+     "Step:\n    eff:\n        stop\n== fleet-syntax.toml\n[run\n", "simulate"},
+    {Kind::kFleetValue, "fleet-value", Severity::kError, "a fleet file that says something impossible",
+     "A key that does not exist, a value of the wrong type or out of range, a model that nobody knows, a name "
+     "used twice, or a\n"
+     "body whose state does not stay finite. docs/simulation.md lists everything that a fleet file may say.",
+     "Step:\n    eff:\n        stop\n== fleet-value.toml\n[[robot]]\nmodel = \"submarine\"\nposition = [0, 0, 0]\n",
+     "simulate"},
 };
 
 }  // namespace

@@ -34,6 +34,7 @@ class SourceSet {
  public:
   FileId Add(std::string path, std::string text);
 
+  size_t size() const { return files_.size(); }
   std::string_view path(FileId file) const { return files_[file.index()].path; }
   std::string_view text(FileId file) const { return files_[file.index()].text; }
   std::string_view Text(Span span) const;

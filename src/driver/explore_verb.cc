@@ -166,8 +166,7 @@ int Run(const Options& options) {
   for (const Explored& e : all) {
     if (!e.run.is_array() || e.run.empty()) continue;
     const std::string path = options.save.empty() ? DefaultRunFile(options.file, e.property) : options.save;
-    const auto written =
-        SaveRun(path, {options.file, options.spec, e.robots, e.property, "explore", e.run}, loaded->model);
+    const auto written = SaveRun(path, {options.file, options.spec, e.robots, e.property, "explore", e.run});
     (written.ok() ? saved : trouble) = written.ok() ? path : written.error().message;
   }
   if (options.json) {

@@ -29,6 +29,9 @@ int Main(int argc, char** argv) {
   AddFormatVerb(app, status);
   AddProveVerb(app, status);
   AddExploreVerb(app, status);
+  AddSimulateVerb(app, status);
+  AddReplayVerb(app, status);
+  AddPlotVerb(app, status);
   AddInferVerb(app, status);
   AddGraphVerb(app, status);
   AddProjectVerb(app, status);

@@ -63,8 +63,9 @@ std::vector<Reached> SearchWitnesses(const koord::Model& model, koord::Report& r
         told.notes = d.notes;
       }
       const std::string path = DefaultRunFile(file, explored.property);
-      if (SaveRun(path, {file, spec, robots, explored.property, "prove --reach", explored.run}, model).ok())
-        reached.run = path;
+      RunFile run{file, spec, robots, explored.property, "prove --reach", explored.run};
+      KeepParameters(run, model, {robots, options.params, options.choices, {}});
+      if (SaveRun(path, run).ok()) reached.run = path;
       reached.text = fmt::format("{}: reachable for {}{}", row.name, scope,
                                  reached.run.empty() ? "" : fmt::format(": `rondo replay {}`", reached.run));
     } else if (explored.broken) {

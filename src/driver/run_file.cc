@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/file.h"
+#include "koord/semantics/values.h"
 #include "solve/cache/proof_cache.h"
 
 namespace rondo::driver {
@@ -18,7 +19,43 @@ std::string DefaultRunFile(const std::string& program, const std::string& proper
   return (folder / (name + ".json")).string();
 }
 
-base::Result<bool> SaveRun(const std::string& path, const RunFile& run, const koord::Model&) {
+namespace {
+
+// Lists and texts come from a heap of their own: counterexamples have none.
+nlohmann::json ValuesToJson(const koord::Model& model, size_t v, const std::vector<koord::semantics::Word>& words) {
+  koord::semantics::Heap heap;
+  const lang::TypeId type = model.variables[v].type;
+  const uint32_t width = koord::semantics::Layout::Width(model.types, type);
+  nlohmann::json list = nlohmann::json::array();
+  for (size_t i = 0; i + width <= words.size(); i += width)
+    list.push_back(koord::semantics::ToJson(model.types, heap, type, std::span(words).subspan(i, width)));
+  return list;
+}
+
+}  // namespace
+
+void KeepParameters(RunFile& run, const koord::Model& model, const koord::semantics::TeamOptions& options) {
+  for (const auto& [v, words] : options.params) run.params[model.variables[v].name] = ValuesToJson(model, v, words);
+  for (const auto& [v, words] : options.choices) run.choices[model.variables[v].name] = ValuesToJson(model, v, words);
+}
+
+void AdoptParameters(const RunFile& run, const koord::Model& model, koord::semantics::TeamOptions& options) {
+  koord::semantics::Heap heap;
+  const auto adopt = [&](const nlohmann::json& given, std::map<size_t, std::vector<koord::semantics::Word>>& to) {
+    for (size_t v = 0; v < model.variables.size(); ++v) {
+      const auto it = given.find(model.variables[v].name);
+      if (it == given.end() || !it->is_array()) continue;
+      for (const nlohmann::json& item : *it) {
+        const auto words = koord::semantics::FromJson(model.types, heap, model.variables[v].type, item);
+        if (words) to[v].insert(to[v].end(), words->begin(), words->end());
+      }
+    }
+  };
+  adopt(run.params, options.params);
+  adopt(run.choices, options.choices);
+}
+
+base::Result<bool> SaveRun(const std::string& path, const RunFile& run) {
   std::error_code ignored;
   const auto absolute = [&](const std::string& file) {
     return file.empty() ? std::string() : std::filesystem::absolute(file, ignored).lexically_normal().string();
@@ -29,6 +66,8 @@ base::Result<bool> SaveRun(const std::string& path, const RunFile& run, const ko
                             {"spec", absolute(run.spec)},
                             {"robots", run.robots},
                             {"breaks", run.property},
+                            {"params", run.params},
+                            {"choices", run.choices},
                             {"steps", run.steps}};
   return base::WriteFileAtomically(path, file.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
@@ -46,8 +85,11 @@ base::Result<RunFile> LoadRun(const std::string& path) {
       json["robots"] > 64 || !json.contains("steps") || !json["steps"].is_array()) {
     return base::Error{"the run is not complete"};
   }
-  return RunFile{text_at("program"), text_at("spec"),   json["robots"].get<size_t>(),
-                 text_at("breaks"),  text_at("engine"), json["steps"]};
+  const auto object_at = [&](const char* key) {
+    return json.contains(key) && json[key].is_object() ? json[key] : nlohmann::json::object();
+  };
+  return RunFile{text_at("program"), text_at("spec"),   json["robots"].get<size_t>(), text_at("breaks"),
+                 text_at("engine"),  json["steps"],     object_at("params"),          object_at("choices")};
 }
 
 }  // namespace rondo::driver

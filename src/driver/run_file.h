@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/result.h"
-#include "koord/check/model.h"
+#include "koord/semantics/team.h"
 
 namespace rondo::driver {
 
@@ -16,13 +16,21 @@ struct RunFile {
   std::string property;
   std::string engine;
   nlohmann::json steps;
+  /// Values of parameters, and of what `explore` declares none for, that came from a counterexample.
+  nlohmann::json params = nlohmann::json::object();
+  nlohmann::json choices = nlohmann::json::object();
 };
+
+/// Puts `params` and `choices` of the file into the options.
+void AdoptParameters(const RunFile& run, const koord::Model& model, koord::semantics::TeamOptions& options);
+/// The reverse, into the file.
+void KeepParameters(RunFile& run, const koord::Model& model, const koord::semantics::TeamOptions& options);
 
 /// Where runs go unless the user says where: a folder for cached data.
 std::string DefaultRunFile(const std::string& program, const std::string& property);
 
 /// Writes the run as a whole or not at all.
-base::Result<bool> SaveRun(const std::string& path, const RunFile& run, const koord::Model& model);
+base::Result<bool> SaveRun(const std::string& path, const RunFile& run);
 
 /// nullopt in `error` style: the message says what is wrong with the file.
 base::Result<RunFile> LoadRun(const std::string& path);

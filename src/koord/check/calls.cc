@@ -229,17 +229,18 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
       Arity(e, 2, 2, name);
       return Mismatch(e.span, "`rect(a, b)` can only stand behind `in`");
     case Builtin::kGrid: {
-      if (!grid_allowed_) {
+      if (!grid_element_.valid()) {
         diagnostics_.Report(Kind::kKoordSpecScope, e.span, "`grid` has a meaning only behind `in` in `explore`")
             .Help("elsewhere, write a list");
+        return types.error();
       }
       if (!Arity(e, 3, 3, name)) return types.error();
-      const TypeId low = Expr(e.args[1]);
-      TypeId element = types.Is(low, TypeKind::kInt) ? types.integer() : types.real();
-      if (types.Resolve(low) == types.pos()) element = types.pos();
+      const TypeId element = grid_element_;
+      if (!types.IsNumeric(element) && types.Resolve(element) != types.pos())
+        return Mismatch(e.span, fmt::format("a grid has numbers or points, not values of type `{}`", types.Name(element)));
       NeedType(e.args[1], element, "the first point of a grid");
       NeedType(e.args[2], element, "the last point of a grid");
-      NeedType(e.args[3], element == types.integer() ? element : types.real(), "the step of a grid");
+      NeedType(e.args[3], types.Is(element, TypeKind::kInt) ? element : types.real(), "the step of a grid");
       return types.List(element);
     }
     case Builtin::kRemove:

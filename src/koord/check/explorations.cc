@@ -71,9 +71,9 @@ void Checker::ExploreVariable(const ExploreEntry& entry, size_t index) {
       for (const ExprId item : exprs_[entry.body].args) NeedType(item, variable.type, what);
       model_.type_of[entry.body.index()] = model_.types.List(variable.type);
     } else {
-      grid_allowed_ = true;
+      grid_element_ = variable.type;
       NeedType(entry.body, model_.types.List(variable.type), fmt::format("the values of `{}`", variable.name));
-      grid_allowed_ = false;
+      grid_element_ = TypeId();
     }
     model_.exploration.choices[index] = entry.body;
   } else {

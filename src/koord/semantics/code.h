@@ -85,6 +85,7 @@ enum class Fault : uint8_t {
   kOverflow,   ///< an int beyond 64 bits, or a float that is not finite
   kExternal,   ///< an external function that has no value there
   kTooLong,    ///< a list or grid of more than a million items
+  kNoLock,     ///< no fault: another robot holds the lock of the event, which is a skip then
   kRunaway,    ///< more than a hundred million instructions
 };
 std::string_view Describe(Fault fault);

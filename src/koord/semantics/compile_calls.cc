@@ -51,7 +51,7 @@ void Compiler::CallFunction(const lang::Expr& e, size_t f) {
     if (name == function.name || (function.port >= 0 && function.name.ends_with("." + name)))
       summaries.push_back(s);
   }
-  if (summaries.empty() || !model_.bound_by.contains(model_.summaries[summaries[0]]))
+  if (in_summary_ || summaries.empty() || !model_.bound_by.contains(model_.summaries[summaries[0]]))
     return CallPlain(f, words, result);
   // Every call is checked against the summaries, except calls in summaries.
   const size_t begin = Emit(Op::kSummaryBegin);
@@ -75,7 +75,9 @@ void Compiler::CallFunction(const lang::Expr& e, size_t f) {
     const bool failed = unsupported_.has_value();
     const size_t start = Here();
     const diag::Span span = span_;
+    in_summary_ = true;
     Gen(model_.summaries[s]->body);
+    in_summary_ = false;
     span_ = span;
     if (!failed && unsupported_) {
       // This summary cannot be evaluated: it is not checked.

@@ -123,6 +123,7 @@ class Compiler {
   std::map<uint32_t, uint32_t> frames_;
   bool used_robot_ = false;
   bool locks_ = false;
+  bool in_summary_ = false;
   std::optional<Unsupported> unsupported_;
   std::map<size_t, Unsupported> unchecked_summaries_;
   std::vector<std::pair<const Stmt*, bool>> branches_;

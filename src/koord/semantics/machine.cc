@@ -55,6 +55,8 @@ std::string_view Describe(Fault fault) {
       return "the function has no value here";
     case Fault::kTooLong:
       return "the list has more than a million items";
+    case Fault::kNoLock:
+      return "another robot holds the lock";
     case Fault::kRunaway:
       return "this runs for more than a hundred million steps";
   }
@@ -591,6 +593,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         total = false;
         break;
       case Op::kLock:
+        if (lock_taken_) RONDO_FAIL(kNoLock);
         locked_ = true;
         break;
       case Op::kStop:

@@ -61,6 +61,8 @@ class Machine {
   };
   const std::vector<Write>& writes() const { return writes_; }
   const std::vector<Unit>& units() const { return units_; }
+  /// Another robot holds the lock of the event: `atomic` ends the run with `Fault::kNoLock`.
+  void SetLockTaken(bool taken) { lock_taken_ = taken; }
   /// Takes the writes of the last run back.
   void Undo();
 
@@ -93,6 +95,7 @@ class Machine {
   Fault fault_ = Fault::kNone;
   diag::Span fault_span_;
   bool locked_ = false;
+  bool lock_taken_ = false;
   bool stopped_ = false;
   bool check_summaries_ = false;
   bool in_summary_ = false;

@@ -1,0 +1,199 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "driver/exit_status.h"
+#include "driver/interrupt.h"
+#include "driver/koord_load.h"
+#include "driver/simulation_files.h"
+#include "driver/terminal.h"
+#include "driver/verbs.h"
+#include "sim/simulation.h"
+
+namespace rondo::driver {
+namespace {
+
+struct Options {
+  std::string file;
+  std::string fleet;
+  std::string spec;
+  std::string trace;
+  std::optional<uint64_t> seed;
+  double duration = 0;
+  unsigned jobs = 0;
+  bool fail_on_collision = false;
+  bool json = false;
+};
+
+std::string Count(uint64_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
+
+nlohmann::json Finite(double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(nullptr); }
+
+std::string Summary(const sim::SimulationReport& report, double seconds) {
+  const bool real = seconds > 0.005;
+  std::string text = fmt::format("  {:.6g} s in {}, {}{}\n", report.time, Count(report.rounds, "round"),
+                                 Count(report.events, "event"),
+                                 real ? fmt::format("; {:.1f} x real time", report.time / seconds) : "");
+  if (report.collisions > 0) {
+    text += fmt::format("  {}; the first at {:.6g} s: {}\n", Count(report.collisions, "collision"),
+                        report.first_collision, report.first_pair);
+  } else {
+    text += "  no collision\n";
+  }
+  if (std::isfinite(report.least_between_robots))
+    text += fmt::format("  robots never closer than {:.3f} m\n", report.least_between_robots);
+  if (std::isfinite(report.least_to_obstacles))
+    text += fmt::format("  obstacles never closer than {:.3f} m\n", report.least_to_obstacles);
+  if (report.known_cells > 0) {
+    text += fmt::format("  map: {} known, {} wrongly occupied, {} reachable but unknown\n",
+                        Count(report.known_cells, "cell"), report.wrong_cells, report.reachable_unknown);
+  }
+  if (report.ended == "stopped") text += "  every robot stopped\n";
+  if (report.ended == "mapped") text += "  the map is complete\n";
+  if (report.ended == "interrupted") text += "  interrupted\n";
+  for (const sim::Violation& v : report.violations) {
+    if (v.count > 1)
+      text += fmt::format("  {}{}: violated {} times, first at {:.6g} s\n", v.what,
+                          v.robot < 0 ? "" : fmt::format(" by robot {}", v.robot), v.count, v.first);
+  }
+  for (const std::string& line : report.log) text += "  " + line + "\n";
+  return text;
+}
+
+nlohmann::json ToJson(const sim::SimulationReport& report) {
+  nlohmann::json violations = nlohmann::json::array();
+  for (const sim::Violation& v : report.violations)
+    violations.push_back({{"what", v.what}, {"robot", v.robot}, {"first", v.first}, {"count", v.count}});
+  return {{"time", report.time},
+          {"rounds", report.rounds},
+          {"events", report.events},
+          {"ended", report.ended},
+          {"collisions", report.collisions},
+          {"least_between_robots", Finite(report.least_between_robots)},
+          {"least_to_obstacles", Finite(report.least_to_obstacles)},
+          {"violations", violations},
+          {"unchecked", report.unchecked},
+          {"plans", report.plans},
+          {"map", {{"known", report.known_cells}, {"wrong", report.wrong_cells}, {"missing", report.reachable_unknown}}},
+          {"log", report.log}};
+}
+
+int Run(const Options& options) {
+  Session session;
+  const SimulationFiles files = FindSimulationFiles(options.file, options.spec, options.fleet);
+  const auto loaded = LoadKoord({files.program, files.spec, true}, session);
+  if (!loaded && !session.diagnostics.has_errors()) return kRejected;
+  sim::Fleet fleet;
+  if (loaded) {
+    const auto file = ReadSource(files.fleet, session);
+    if (!file) {
+      PrintFailure(fmt::format("a simulation needs a fleet: robots, models and a world; see docs/simulation.md"));
+      return kRejected;
+    }
+    fleet = sim::ReadFleet(session.sources, *file, session.diagnostics);
+  }
+  const auto finish_early = [&](int status) {
+    if (options.json) {
+      PrintJson({{"command", "simulate"},
+                 {"file", files.program},
+                 {"status", status},
+                 {"diagnostics", DiagnosticsToJson(session.sources, session.diagnostics)}});
+    } else {
+      PrintDiagnostics(session.sources, session.diagnostics);
+    }
+    return status;
+  };
+  if (session.diagnostics.has_errors()) return finish_early(kRejected);
+  sim::SimulationOptions simulation;
+  simulation.seed = options.seed.value_or(fleet.seed.value_or(1));
+  simulation.duration = options.duration;
+  simulation.jobs = options.jobs;
+  KeepTexts(files, session, simulation);
+  std::optional<trace::Writer> writer;
+  if (!options.trace.empty()) {
+    auto opened = trace::Writer::Open(options.trace);
+    if (!opened.ok()) {
+      PrintFailure(fmt::format("cannot write `{}`: {}", options.trace, opened.error().message));
+      return kRejected;
+    }
+    writer.emplace(std::move(opened).value());
+  }
+  sim::SimulationReport report;
+  const auto begin = std::chrono::steady_clock::now();
+  {
+    ProgressLine line;
+    const InterruptScope interrupt(simulation.stop);
+    auto last = begin;
+    simulation.progress = [&](double time, double end) {
+      const auto now = std::chrono::steady_clock::now();
+      if (now - last < std::chrono::milliseconds(200)) return;
+      last = now;
+      const double seconds = std::chrono::duration<double>(now - begin).count();
+      line.Show(fmt::format("[{:.0f} of {:.0f} s] {:.1f} x real time", time, end, time / seconds));
+    };
+    report = sim::Simulate(loaded->model, fleet, simulation, writer ? &*writer : nullptr, session.diagnostics);
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (!report.ran) return finish_early(kRejected);
+  // A run that was cut off is kept, for its end is in it; one that could not begin is not.
+  bool written = true;
+  if (writer) {
+    const auto done = writer->Finish();
+    written = done.ok();
+    if (!written) PrintFailure(fmt::format("cannot write `{}`: {}", options.trace, done.error().message));
+  }
+  int status = kEstablished;
+  if (!report.unchecked.empty() || report.ended == "interrupted") status = kUndecided;
+  if (fleet.until == "mapped" && report.ended == "time") status = kUndecided;
+  if (session.diagnostics.has_errors() || !written || (options.fail_on_collision && report.collisions > 0))
+    status = kRejected;
+  if (options.json) {
+    nlohmann::json out = ToJson(report);
+    out["command"] = "simulate";
+    out["file"] = files.program;
+    out["seed"] = simulation.seed;
+    out["seconds"] = seconds;
+    out["status"] = status;
+    out["diagnostics"] = DiagnosticsToJson(session.sources, session.diagnostics);
+    PrintJson(out);
+    return status;
+  }
+  Print(fmt::format("{}: {}, seed {}\n{}", files.program, Count(fleet.robots.size(), "robot"), simulation.seed,
+                    Summary(report, seconds)));
+  if (written && writer) Print(fmt::format("trace: {}\n", options.trace));
+  PrintDiagnostics(session.sources, session.diagnostics);
+  return status;
+}
+
+}  // namespace
+
+void AddSimulateVerb(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("simulate", "run a Koord program on simulated robots, in virtual time");
+  verb->add_option("FILE", options->file,
+                   "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet, `NAME.spec` the "
+                   "specification")
+      ->required();
+  verb->add_option("--fleet", options->fleet, "the fleet, if it is not beside the program");
+  verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
+  verb->add_option("--seed", options->seed, "of everything that is random; default: the fleet's, or 1");
+  verb->add_option("--duration", options->duration, "seconds; default: as the fleet says")
+      ->check(CLI::Range(1e-3, 1e7));
+  verb->add_option("--trace", options->trace, "write everything that happens into this file (MCAP)");
+  verb->add_option("--jobs", options->jobs, "threads; default: one for each core. The run does not depend on it");
+  verb->add_flag("--fail-on-collision", options->fail_on_collision, "exit status 1 if robots touch anything");
+  verb->add_flag("--json", options->json, "the result as JSON on standard output");
+  verb->footer(
+      "examples:\n  rondo simulate examples/koord/mapping --seed 1 --trace mapping.mcap\n"
+      "  rondo plot mapping.mcap --map --svg map.svg\n"
+      "  rondo replay mapping.mcap\n\n"
+      "Every invariant, assumption and summary is checked while the program runs.\n"
+      "exit status: 0 nothing was violated, 1 something was, 3 not everything could be checked, or interrupted");
+  verb->callback([options, &status] { status = Run(*options); });
+}
+
+}  // namespace rondo::driver

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "sim/fleet/fleet.h"
+#include "sim/library/grid_map.h"
+#include "trace/ros.h"
+
+namespace rondo::sim {
+
+/// Writes what happens in a simulation to a trace; does nothing without one.
+///
+/// Topics: `/rondo/run` (once, JSON: everything that a replay needs), `/rondo/round` and `/rondo/event` (JSON),
+/// `/ROBOT/pose` (PoseStamped), `/ROBOT/path` (Path), `/ROBOT/scan` (LaserScan), `/world` (MarkerArray),
+/// `/map` (OccupancyGrid).
+class Recorder {
+ public:
+  Recorder(trace::Writer* writer, const Fleet& fleet);
+
+  bool on() const { return writer_ != nullptr; }
+  void Run(const nlohmann::json& run);
+  void World(const Fleet& fleet);
+  void Round(double time, const nlohmann::json& round);
+  void Event(double time, const nlohmann::json& event);
+  void Pose(double time, size_t robot, const Body& body);
+  void Path(double time, size_t robot, const std::vector<Point>& path);
+  void Scan(double time, size_t robot, const Rays& rays, double yaw, double period);
+  void Map(double time, const GridMap& map);
+
+  static uint64_t Nanoseconds(double time);
+
+ private:
+  uint16_t Channel(const std::string& topic, const trace::Schema& schema, const char* encoding);
+
+  trace::Writer* writer_;
+  const Fleet& fleet_;
+  std::map<std::string, uint16_t> channels_;
+};
+
+}  // namespace rondo::sim

@@ -1,0 +1,139 @@
+#include "trace/reader.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <map>
+
+#include "trace/bytes.h"
+
+namespace rondo::trace {
+namespace {
+
+constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
+
+class Reader {
+ public:
+  Reader(std::string_view file, const std::function<bool(const Message&)>& visit) : file_(file), visit_(visit) {}
+
+  base::Result<bool> Run() {
+    if (!file_.starts_with(kMagic)) return base::Error{"this is not an MCAP file"};
+    if (file_.size() < 2 * kMagic.size() || !file_.ends_with(kMagic))
+      return base::Error{"the file is cut off: it does not end as an MCAP file does"};
+    Cursor cursor(file_.substr(kMagic.size(), file_.size() - 2 * kMagic.size()));
+    if (!Records(cursor, 0)) return base::Error{problem_};
+    if (!more_) return true;
+    if (!ended_) return base::Error{"the file has no end record"};
+    return true;
+  }
+
+ private:
+  bool Bad(std::string_view what, std::string_view rest) {
+    const auto at = static_cast<size_t>(rest.data() - file_.data());
+    problem_ = fmt::format("{} at byte {}", what, at);
+    return false;
+  }
+
+  bool Records(Cursor& cursor, int depth) {
+    while (!cursor.empty() && more_ && !ended_) {
+      const std::string_view before = cursor.rest();
+      const auto op = cursor.Take<uint8_t>();
+      const auto size = cursor.Take<uint64_t>();
+      const auto content = size ? cursor.Take(*size) : std::nullopt;
+      if (!op || !content) return Bad("a record is cut off", before);
+      if (!One(*op, *content, depth)) return problem_.empty() ? Bad("a record is damaged", before) : false;
+    }
+    return true;
+  }
+
+  bool One(uint8_t op, std::string_view content, int depth) {
+    Cursor c(content);
+    switch (op) {
+      case 0x03: {  // schema
+        const auto id = c.Take<uint16_t>();
+        const auto name = c.TakeText();
+        if (!id || !name) return false;
+        schemas_[*id] = *name;
+        return true;
+      }
+      case 0x04: {  // channel
+        const auto id = c.Take<uint16_t>();
+        const auto schema = c.Take<uint16_t>();
+        const auto topic = c.TakeText();
+        const auto encoding = c.TakeText();
+        if (!id || !schema || !topic || !encoding) return false;
+        channels_[*id] = {*topic, *encoding, *schema};
+        return true;
+      }
+      case 0x05: {  // message
+        const auto id = c.Take<uint16_t>();
+        const auto sequence = c.Take<uint32_t>();
+        const auto time = c.Take<uint64_t>();
+        const auto published = c.Take<uint64_t>();
+        if (!id || !sequence || !time || !published) return false;
+        const auto channel = channels_.find(*id);
+        if (channel == channels_.end()) return false;
+        more_ = visit_({channel->second.topic, schemas_[channel->second.schema], channel->second.encoding, *time,
+                        c.rest()});
+        return true;
+      }
+      case 0x06: {  // chunk
+        if (depth > 0) return false;
+        const auto start = c.Take<uint64_t>();
+        const auto end = c.Take<uint64_t>();
+        const auto size = c.Take<uint64_t>();
+        const auto crc = c.Take<uint32_t>();
+        const auto compression = c.TakeText();
+        const auto length = c.Take<uint64_t>();
+        const auto records = length ? c.Take(*length) : std::nullopt;
+        if (!start || !end || !size || !crc || !compression || !records) return false;
+        if (!compression->empty()) return Bad("a compressed chunk, which Rondo does not read,", content);
+        Cursor inner(*records);
+        return Records(inner, depth + 1);
+      }
+      case 0x0F:  // the data ends here; the rest is an index
+        ended_ = depth == 0;
+        return depth == 0;
+      default:
+        return true;
+    }
+  }
+
+  struct Channel {
+    std::string_view topic;
+    std::string_view encoding;
+    uint16_t schema = 0;
+  };
+  std::string_view file_;
+  const std::function<bool(const Message&)>& visit_;
+  std::map<uint16_t, std::string_view> schemas_;
+  std::map<uint16_t, Channel> channels_;
+  bool more_ = true;
+  bool ended_ = false;
+  std::string problem_;
+};
+
+}  // namespace
+
+base::Result<bool> ForEachMessage(std::string_view file, const std::function<bool(const Message&)>& visit) {
+  return Reader(file, visit).Run();
+}
+
+base::Result<std::string> ReadTrace(const std::string& path) {
+  std::error_code problem;
+  const uint64_t size = std::filesystem::file_size(path, problem);
+  if (problem) return base::Error{problem.message()};
+  if (size > (uint64_t{4} << 30)) return base::Error{"the file is larger than 4 GiB"};
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  if (file == nullptr) return base::Error{std::strerror(errno)};
+  std::string bytes(size, '\0');
+  const size_t got = std::fread(bytes.data(), 1, bytes.size(), file);
+  std::fclose(file);
+  if (got != size) return base::Error{"the file could not be read to its end"};
+  return bytes;
+}
+
+}  // namespace rondo::trace

@@ -1,0 +1,285 @@
+// Random small Koord programs: what is proved is never violated by exhaustive exploration, every
+// counterexample of the prover is a round of the executable semantics, and the reductions of the explorer
+// lose nothing.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <random>
+#include <set>
+
+#include "explore/search.h"
+#include "koord/check/check.h"
+#include "koord/prove/prove.h"
+#include "koord/semantics/system.h"
+#include "koord/syntax/parser.h"
+#include "solve/z3/z3_solver.h"
+
+namespace rondo::koord {
+namespace {
+
+using semantics::System;
+using semantics::Team;
+
+class Texts {
+ public:
+  explicit Texts(uint64_t seed) : rng_(seed) {}
+
+  std::string Whole() {
+    sensor_ = Pick(3) == 0;
+    cells_ = Pick(4) == 0;
+    std::string text;
+    if (sensor_) text += "using M:\n    sensors:\n        bool near\n    actuators:\n        int power\n";
+    text += "allread:\n    int x[N_sys] = 0\n    bool up[N_sys] = false\n";
+    text += "allwrite:\n    int s = 0\n    int t = 1\n";
+    if (cells_) text += "    int c[3]\n";
+    text += "local:\n    int n = 0\n    bool b = false\n";
+    if (cells_) text += "init:\n    c[0] = 0\n    c[1] = 0\n    c[2] = 0\n";
+    const size_t events = 1 + Pick(3);
+    for (size_t e = 0; e < events; ++e) text += Event(e);
+    const size_t invariants = 1 + Pick(2);
+    for (size_t i = 0; i < invariants; ++i) text += "invariant i" + std::to_string(i) + ": " + Invariant() + "\n";
+    if (sensor_ && Pick(2) == 0)
+      text += "assume M.calm when M.power > 0 always M.near == old(M.near)\n";
+    return text;
+  }
+
+ private:
+  size_t Pick(size_t n) { return static_cast<size_t>(rng_() % n); }
+  template <size_t N>
+  std::string One(const char* const (&list)[N]) {
+    return list[Pick(N)];
+  }
+
+  std::string Int() {
+    switch (Pick(8)) {
+      case 0:
+        return std::to_string(Pick(4));
+      case 1:
+        return "s";
+      case 2:
+        return "t";
+      case 3:
+        return "n";
+      case 4:
+        return "x[pid]";
+      case 5:
+        return Pick(2) == 0 ? "pid" : "N_sys";
+      case 6:
+        return "(" + Int() + One({" + ", " - "}) + Int() + ")";
+      default:
+        return cells_ ? "c[" + std::to_string(Pick(3)) + "]" : "min(" + Int() + ", 2)";
+    }
+  }
+
+  std::string Bool(int depth = 2) {
+    switch (Pick(depth > 0 ? 8 : 5)) {
+      case 0:
+        return "b";
+      case 1:
+        return "up[pid]";
+      case 2:
+        return sensor_ ? "M.near" : "b";
+      case 3:
+      case 4:
+        return Int() + One({" == ", " <= ", " < ", " != "}) + Int();
+      case 5:
+        return "not (" + Bool(depth - 1) + ")";
+      case 6:
+        return "(" + Bool(depth - 1) + One({" and ", " or "}) + Bool(depth - 1) + ")";
+      default:
+        return One({"(forall j in ID: not up[j])", "(exists j in ID: x[j] > 0)", "(forall j in ID: x[j] <= s)"});
+    }
+  }
+
+  std::string Statement(const std::string& indent, int depth) {
+    switch (Pick(depth > 0 ? 11 : 7)) {
+      case 0:
+        return indent + "n = " + Capped() + "\n";
+      case 1:
+        return indent + "b = " + Bool(1) + "\n";
+      case 2:
+        return indent + "x[pid] = " + Capped() + "\n";
+      case 3:
+        return indent + "up[pid] = " + Bool(1) + "\n";
+      case 4:
+        return indent + "s = " + Capped() + "\n";
+      case 5:
+        return indent + "t = " + Capped() + "\n";
+      case 6:
+        if (sensor_ && Pick(2) == 0) return indent + "M.power = " + Capped() + "\n";
+        return cells_ ? indent + "c[" + (Pick(2) == 0 ? "1" : "min(max(n, 0), 2)") + "] = " + Capped() + "\n"
+                      : indent + "stop\n";
+      case 7:
+      case 8:
+        return indent + "if " + Bool(1) + ":\n" + Statement(indent + "    ", depth - 1) + indent + "else:\n" +
+               Statement(indent + "    ", depth - 1);
+      case 9:
+        return indent + "for k = 0, 2:\n" + Statement(indent + "    ", 0);
+      default:
+        return indent + "atomic:\n" + Statement(indent + "    ", depth - 1) + Statement(indent + "    ", depth - 1);
+    }
+  }
+
+  // Small, so that there are few states.
+  std::string Capped() { return "min(max(" + Int() + ", 0), 2)"; }
+
+  std::string Event(size_t number) {
+    std::string text = "E" + std::to_string(number) + ":\n";
+    text += std::string("    pre") + (Pick(5) == 0 ? " urgent" : "") + ": " + (Pick(4) == 0 ? "true" : Bool()) + "\n";
+    text += "    eff:\n";
+    const size_t count = 1 + Pick(3);
+    for (size_t i = 0; i < count; ++i) text += Statement("        ", 2);
+    return text;
+  }
+
+  std::string Invariant() {
+    switch (Pick(8)) {
+      case 0:
+        return "s <= 2";
+      case 1:
+        return "s + t <= " + std::to_string(1 + Pick(4));
+      case 2:
+        return "forall i in ID: n[i] <= " + std::to_string(Pick(3));
+      case 3:
+        return "forall i, j in ID: up[i] and up[j] implies i == j";
+      case 4:
+        return "forall i in ID: up[i] implies x[i] <= s";
+      case 5:
+        return "forall i in ID: b[i] implies up[i]";
+      case 6:
+        return "forall i in ID: x[i] >= 0 and n[i] <= s + 2";
+      default:
+        return cells_ ? "c[0] + c[1] <= 3" : "exists i in ID: not up[i]";
+    }
+  }
+
+  std::mt19937_64 rng_;
+  bool sensor_ = false;
+  bool cells_ = false;
+};
+
+struct Loaded {
+  diag::SourceSet sources;
+  diag::Diagnostics diagnostics;
+  Program program;
+  Model model;
+
+  explicit Loaded(const std::string& text) {
+    Parse(sources, sources.Add("random", text), program, diagnostics);
+    if (!diagnostics.has_errors()) model = Check(program, diagnostics);
+  }
+  bool good() const { return !diagnostics.has_errors(); }
+};
+
+struct Outcome {
+  explore::SearchResult search;
+  std::set<std::vector<semantics::Word>> states;
+  bool usable = false;
+};
+
+Outcome ExploreAll(const Model& model, size_t robots, semantics::SystemOptions options, bool states) {
+  Outcome outcome;
+  diag::Diagnostics diagnostics;
+  const auto team = Team::Make(model, {robots, {}, {}, {}}, diagnostics);
+  if (team == nullptr) return outcome;
+  System system(*team, options, diagnostics);
+  explore::SearchOptions search;
+  search.states = 20'000;
+  outcome.search = explore::Search(system, search);
+  outcome.usable = !diagnostics.has_errors();
+  if (!states || outcome.search.ending != explore::Ending::kComplete) return outcome;
+  // Once more, by hand, to see them.
+  std::vector<std::vector<semantics::Word>> queue;
+  const explore::Visit visit = [&](std::span<const semantics::Word> state) {
+    std::vector<semantics::Word> words(state.begin(), state.end());
+    if (!outcome.states.insert(system.Unpack(words)).second) return explore::Seen::kKnown;
+    queue.push_back(std::move(words));
+    return explore::Seen::kNew;
+  };
+  system.Initial(visit);
+  for (size_t i = 0; i < queue.size(); ++i) {
+    const auto state = queue[i];
+    system.Successors(state, visit);
+  }
+  return outcome;
+}
+
+// States up to and including the broken one.
+size_t Length(const Outcome& outcome) {
+  return outcome.search.path.size() + (outcome.search.broken.at_visited ? 0 : 1);
+}
+
+uint64_t Cases(uint64_t usual) {
+  const char* wanted = std::getenv("RONDO_CASES");
+  return wanted == nullptr ? usual : std::max<uint64_t>(usual, std::strtoull(wanted, nullptr, 10) / 100);
+}
+
+TEST(ExploreAgreement, WhatIsProvedIsNeverViolated) {
+  const solve::z3::Z3Solver z3;
+  size_t proved = 0;
+  size_t violated = 0;
+  size_t replayed = 0;
+  for (uint64_t seed = 1; seed <= Cases(300); ++seed) {
+    const std::string text = Texts(seed).Whole();
+    Loaded loaded(text);
+    ASSERT_TRUE(loaded.good()) << "seed " << seed << "\n" << text;
+    ProveOptions options;
+    options.solver = &z3;
+    options.jobs = 1;
+    options.timeout = std::chrono::milliseconds(1000);
+    diag::Diagnostics diagnostics;
+    const Report report = Prove(loaded.model, options, diagnostics);
+    // A counterexample that the executable semantics cannot replay is a disagreement.
+    ASSERT_FALSE(report.disagreement) << "seed " << seed << "\n" << text;
+    for (const Row& row : report.rows) replayed += row.witness.has_value() ? 1 : 0;
+    for (size_t n = 1; n <= 4; ++n) {
+      const Outcome found = ExploreAll(loaded.model, n, {}, false);
+      ASSERT_TRUE(found.usable) << text;
+      if (found.search.ending != explore::Ending::kBroken) continue;
+      ++violated;
+      const auto property = static_cast<size_t>(found.search.broken.property);
+      ASSERT_LT(property, report.rows.size());  // the last row is that operations are defined
+      EXPECT_NE(report.rows[property].verdict, Verdict::kProved)
+          << "seed " << seed << ", N = " << n << ", " << report.rows[property].name << "\n" << text;
+      break;
+    }
+    for (const Row& row : report.rows) proved += row.verdict == Verdict::kProved ? 1 : 0;
+  }
+  EXPECT_GT(proved, 40U);
+  EXPECT_GT(violated, 25U);
+  EXPECT_GT(replayed, 40U);
+}
+
+TEST(ExploreAgreement, ReductionsLoseNothing) {
+  size_t complete = 0;
+  size_t symmetric = 0;
+  for (uint64_t seed = 10'001; seed <= 10'000 + Cases(300); ++seed) {
+    const std::string text = Texts(seed).Whole();
+    Loaded loaded(text);
+    ASSERT_TRUE(loaded.good());
+    for (size_t n = 1; n <= 3; ++n) {
+      const Outcome all = ExploreAll(loaded.model, n, {false, false}, true);
+      const Outcome reduced = ExploreAll(loaded.model, n, {true, false}, true);
+      const Outcome renamed = ExploreAll(loaded.model, n, {true, true}, true);
+      const bool cut = all.search.ending == explore::Ending::kStates;
+      if (cut) continue;
+      ASSERT_EQ(all.search.ending, reduced.search.ending) << "seed " << seed << ", N = " << n << "\n" << text;
+      ASSERT_EQ(all.search.ending, renamed.search.ending) << "seed " << seed << ", N = " << n << "\n" << text;
+      if (all.search.ending != explore::Ending::kComplete) {
+        // The shortest run is as short.
+        EXPECT_EQ(Length(all), Length(reduced)) << "seed " << seed << "\n" << text;
+        EXPECT_EQ(Length(all), Length(renamed)) << "seed " << seed << "\n" << text;
+        continue;
+      }
+      ++complete;
+      EXPECT_EQ(all.states, reduced.states) << "seed " << seed << ", N = " << n << "\n" << text;
+      if (renamed.states.size() < all.states.size()) ++symmetric;
+      for (const auto& state : renamed.states) EXPECT_TRUE(all.states.contains(state)) << text;
+    }
+  }
+  EXPECT_GT(complete, 100U);
+  EXPECT_GT(symmetric, 10U);
+}
+
+}  // namespace
+}  // namespace rondo::koord
