@@ -45,7 +45,8 @@ void ReportBroken(Team& team, System& system, const std::vector<std::vector<koor
         size_t robot = 0;
         std::vector<koord::semantics::Word> last = run.back().state;
         team.machine().SetMemory(last.data());
-        if (!team.Holds(invariant, &robot) && invariant.per_robot) report.Under(fmt::format("of robot {}", robot));
+        if (!team.Holds(invariant, &robot) && invariant.per_robot)
+          report.Under(fmt::format("of robot {}", robot));
       }
       report.Note(fmt::format("with {} robot{}:\n{}", team.robots(), team.robots() == 1 ? "" : "s", table));
       break;
@@ -53,12 +54,14 @@ void ReportBroken(Team& team, System& system, const std::vector<std::vector<koor
     case Trouble::kFault: {
       explored.property = "well-defined";
       const bool start = detail.event < 0;
-      auto& report = diagnostics.Report(
-          Kind::kKoordFault, detail.span,
-          start ? fmt::format("an initial value has no result: {}", Describe(detail.fault))
-                : fmt::format("robot {} fails after {}: {}", detail.robot, Rounds(rounds), Describe(detail.fault)));
+      auto& report =
+          diagnostics.Report(Kind::kKoordFault, detail.span,
+                             start ? fmt::format("an initial value has no result: {}", Describe(detail.fault))
+                                   : fmt::format("robot {} fails after {}: {}", detail.robot, Rounds(rounds),
+                                                 Describe(detail.fault)));
       if (!start) {
-        report.Under(fmt::format("in event `{}`", team.events()[static_cast<size_t>(detail.event)].def->name));
+        report.Under(
+            fmt::format("in event `{}`", team.events()[static_cast<size_t>(detail.event)].def->name));
         report.Note(fmt::format("with {} robot{}:\n{}", team.robots(), team.robots() == 1 ? "" : "s", table));
       }
       break;
@@ -89,7 +92,8 @@ void Walk(Team& team, System& system, const ExplorationOptions& options, Explore
         next.emplace_back(state.begin(), state.end());
         return explore::Seen::kNew;
       };
-      const explore::Broken broken = path.empty() ? system.Initial(visit) : system.Successors(path.back(), visit);
+      const explore::Broken broken =
+          path.empty() ? system.Initial(visit) : system.Successors(path.back(), visit);
       if (broken.property >= 0) {
         if (broken.at_visited) path.push_back(next.back());
         return ReportBroken(team, system, path, broken, explored, diagnostics);
@@ -117,7 +121,8 @@ std::vector<size_t> DeclaredSizes(const koord::Model& model, diag::Diagnostics& 
     if (good && std::stoul(number.text) <= 64) {
       sizes.push_back(std::stoul(number.text));
     } else {
-      diagnostics.Report(Kind::kKoordNotExecutable, number.span, "a team that is explored has 1 to 64 robots");
+      diagnostics.Report(Kind::kKoordNotExecutable, number.span,
+                         "a team that is explored has 1 to 64 robots");
     }
   }
   return sizes;
@@ -137,7 +142,8 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
   explored.symmetric = system.symmetric();
   for (const auto& part : team->unchecked()) {
     diagnostics
-        .Report(Kind::kKoordNotChecked, part.span, fmt::format("runs are not checked against `{}`", part.name))
+        .Report(Kind::kKoordNotChecked, part.span,
+                fmt::format("runs are not checked against `{}`", part.name))
         .Under(part.reason);
     for (size_t i = 0; i < model.invariants.size(); ++i) {
       if (koord::InvariantName(model, i) == part.name) explored.unchecked.push_back(part.name);
@@ -191,12 +197,14 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
   const bool none = options.walks == 0 && search.initial == 0 && search.ending == Ending::kComplete;
   if (none) {
     diagnostics
-        .Report(Kind::kKoordNoInitialState, team->initially().empty() ? model.events[0]->span : team->initially()[0].span,
-                fmt::format("no declared state of {} robot{} satisfies the assumptions about the initial state",
-                            robots, robots == 1 ? "" : "s"))
-        .Note(explored.zeroed.empty() ? std::string("every declared state is refused")
-                                      : fmt::format("zero, false or empty at the start: {}",
-                                                    fmt::join(explored.zeroed, ", ")))
+        .Report(
+            Kind::kKoordNoInitialState,
+            team->initially().empty() ? model.events[0]->span : team->initially()[0].span,
+            fmt::format("no declared state of {} robot{} satisfies the assumptions about the initial state",
+                        robots, robots == 1 ? "" : "s"))
+        .Note(explored.zeroed.empty()
+                  ? std::string("every declared state is refused")
+                  : fmt::format("zero, false or empty at the start: {}", fmt::join(explored.zeroed, ", ")))
         .Help("give other initial values: `explore:` and, in the block below, `NAME in [...]`");
     explored.broken = true;
   }

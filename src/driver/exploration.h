@@ -44,8 +44,8 @@ struct Explored {
   uint64_t walked = 0;
   nlohmann::json run;  ///< the counterexample, for `rondo replay`; null if there is none
   std::string property;
-  std::vector<uint64_t> enabled;       ///< by event
-  std::vector<bool> branches;          ///< taken, by number
+  std::vector<uint64_t> enabled;  ///< by event
+  std::vector<bool> branches;     ///< taken, by number
   std::vector<diag::Span> branch_spans;
   std::vector<std::string> unchecked;  ///< invariants that runs are not checked against
   std::vector<std::string> zeroed;

@@ -83,12 +83,14 @@ std::string Table(const std::vector<Explored>& all, const Options& options) {
     const std::string size =
         options.walks > 0
             ? fmt::format("{}, {}", Count(e.walked, "walk"), Count(e.search.transitions, "step"))
-            : fmt::format("{}, {}, {}", Count(e.search.states, e.symmetric ? "state up to renaming" : "state"),
+            : fmt::format("{}, {}, {}",
+                          Count(e.search.states, e.symmetric ? "state up to renaming" : "state"),
                           Count(e.search.transitions, "transition"), Count(e.rounds, "round"));
     std::string fixed = size;
     if (const size_t at = fixed.find("state up to renamings"); at != std::string::npos)
       fixed.replace(at, 21, "states up to renaming");
-    text += fmt::format("  N = {:<3} {:58} {:12} {:8.2f} s", e.robots, fixed, Word(e, options), e.search.seconds);
+    text +=
+        fmt::format("  N = {:<3} {:58} {:12} {:8.2f} s", e.robots, fixed, Word(e, options), e.search.seconds);
     if (e.search.seconds > 0.5) text += fmt::format("  {:.0f} states/s", rate);
     text += "\n";
   }
@@ -117,7 +119,8 @@ int StatusOf(const std::vector<Explored>& all, const Options& options) {
   for (const Explored& e : all) {
     if (e.broken || e.unusable) return kRejected;
     const bool cut = e.search.ending == Ending::kStates || e.search.ending == Ending::kStopped;
-    undecided = undecided || cut || e.stuck || !e.unchecked.empty() || (options.walks > 0 && e.walked < options.walks);
+    undecided = undecided || cut || e.stuck || !e.unchecked.empty() ||
+                (options.walks > 0 && e.walked < options.walks);
   }
   return undecided ? kUndecided : kEstablished;
 }
@@ -149,7 +152,8 @@ int Run(const Options& options) {
     for (const size_t n : sizes) {
       exploration.progress = [&](const explore::SearchOptions::Progress& p) {
         line.Show(fmt::format("[N = {}] {} states, {:.0f} states/s, frontier {}, depth {}", n, p.states,
-                              static_cast<double>(p.states) / std::max(p.seconds, 1e-9), p.frontier, p.depth));
+                              static_cast<double>(p.states) / std::max(p.seconds, 1e-9), p.frontier,
+                              p.depth));
       };
       all.push_back(Explore(loaded->model, n, exploration, session.diagnostics));
       // The first counterexample has the fewest robots; what cannot be run with one size cannot with another.
@@ -174,9 +178,10 @@ int Run(const Options& options) {
     for (const Explored& e : all) {
       if (!e.unusable) sizes_json.push_back(ToJson(e, options, loaded->model));
     }
-    nlohmann::json out{{"command", "explore"},  {"file", options.file},
-                       {"status", status},      {"explored", sizes_json},
-                       {"seed", options.seed},  {"diagnostics", DiagnosticsToJson(session.sources, session.diagnostics)}};
+    nlohmann::json out{
+        {"command", "explore"}, {"file", options.file},
+        {"status", status},     {"explored", sizes_json},
+        {"seed", options.seed}, {"diagnostics", DiagnosticsToJson(session.sources, session.diagnostics)}};
     if (!saved.empty()) out["run"] = saved;
     PrintJson(out);
     return status;
@@ -188,11 +193,12 @@ int Run(const Options& options) {
     std::vector<std::string> done;
     for (const Explored& e : all) done.push_back(fmt::format("{}", e.robots));
     const size_t invariants = loaded->model.invariants.size();
-    const std::string what = options.walks > 0       ? "simulated at random"
-                             : options.depth > 0     ? fmt::format("explored up to {}", Count(options.depth, "round"))
-                                                     : "explored";
-    text += fmt::format("\n{}: {} hold{} for N = {}, no operation fails.\n", what, Count(invariants, "invariant"),
-                        invariants == 1 ? "s" : "", fmt::join(done, ", "));
+    const std::string what = options.walks > 0 ? "simulated at random"
+                             : options.depth > 0
+                                 ? fmt::format("explored up to {}", Count(options.depth, "round"))
+                                 : "explored";
+    text += fmt::format("\n{}: {} hold{} for N = {}, no operation fails.\n", what,
+                        Count(invariants, "invariant"), invariants == 1 ? "s" : "", fmt::join(done, ", "));
   }
   if (!all.empty() && !all[0].zeroed.empty())
     text += fmt::format("zero, false or empty at the start: {}\n", fmt::join(all[0].zeroed, ", "));
@@ -218,7 +224,8 @@ void AddExploreVerb(CLI::App& app, int& status) {
   verb->add_option("--states", options->states, "give up beyond so many states; default: 100000000")
       ->check(CLI::Range(uint64_t{1}, uint64_t{4'000'000'000}));
   verb->add_flag("--deadlock", options->deadlock, "look for states in which nothing can happen any more");
-  verb->add_flag("--no-symmetry", options->no_symmetry, "count states that differ in the names of robots apart");
+  verb->add_flag("--no-symmetry", options->no_symmetry,
+                 "count states that differ in the names of robots apart");
   verb->add_flag("--no-reduction", options->no_reduction,
                  "every order of the robots, one after the other (slow: to check the explorer)");
   verb->add_flag("--compact", options->compact,

@@ -1,5 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 
 #include "driver/exit_status.h"
 #include "driver/terminal.h"
@@ -52,7 +53,8 @@ void AddPlotVerb(CLI::App& app, int& status) {
   verb->add_option("TRACE", options->trace, "what `rondo simulate --trace` wrote")->required();
   verb->add_option("--svg", options->svg, "where to write the picture")->required();
   auto* paths = verb->add_flag("--paths", options->paths, "where the robots went, from above (the default)");
-  auto* distances = verb->add_flag("--distances", options->distances, "how near robots and obstacles came, over time");
+  auto* distances =
+      verb->add_flag("--distances", options->distances, "how near robots and obstacles came, over time");
   auto* map = verb->add_flag("--map", options->map, "the map that the robots drew, and the world as it is");
   paths->excludes(distances)->excludes(map);
   distances->excludes(map);

@@ -110,7 +110,8 @@ int Run(const Options& options) {
   if (options.json) {
     nlohmann::json json = ProveJson(session, options.file, &report, status);
     for (const Reached& r : reached)
-      json["reach"].push_back({{"invariant", r.invariant}, {"found", r.found}, {"text", r.text}, {"run", r.run}});
+      json["reach"].push_back(
+          {{"invariant", r.invariant}, {"found", r.found}, {"text", r.text}, {"run", r.run}});
     PrintJson(json);
     return status;
   }

@@ -71,12 +71,13 @@ std::vector<Reached> SearchWitnesses(const koord::Model& model, koord::Report& r
     } else if (explored.broken) {
       reached.text = fmt::format("{}: another property breaks first: {}", row.name, explored.property);
     } else if (explored.search.ending == explore::Ending::kComplete) {
-      reached.text = fmt::format("{}: no run violates it for {} with these values ({} states): a further invariant "
-                                 "may exclude the state",
-                                 row.name, scope, explored.search.states);
+      reached.text = fmt::format(
+          "{}: no run violates it for {} with these values ({} states): a further invariant "
+          "may exclude the state",
+          row.name, scope, explored.search.states);
     } else {
-      reached.text = fmt::format("{}: no run of up to {} rounds violates it for {} ({} states{})", row.name, rounds,
-                                 scope, explored.search.states,
+      reached.text = fmt::format("{}: no run of up to {} rounds violates it for {} ({} states{})", row.name,
+                                 rounds, scope, explored.search.states,
                                  explored.search.ending == explore::Ending::kDepth ? "" : ", cut off");
     }
     result.push_back(std::move(reached));

@@ -57,15 +57,19 @@ Verdict ReplayRun(const RunFile& run, Session& session) {
   AdoptParameters(run, loaded->model, team_options);
   const auto team = koord::semantics::Team::Make(loaded->model, team_options, problems);
   if (!team) {
-    return {false, fmt::format("the program cannot be executed: {}",
-                               problems.all().empty() ? std::string("no reason") : problems.all()[0].message)};
+    return {false,
+            fmt::format("the program cannot be executed: {}",
+                        problems.all().empty() ? std::string("no reason") : problems.all()[0].message)};
   }
   const std::string differs = koord::semantics::Replay(*team, run.steps);
   if (!differs.empty()) return {false, differs};
-  return {true, fmt::format("replayed: {} steps of {} robots; it breaks {}", run.steps.size(), run.robots, run.property)};
+  return {true, fmt::format("replayed: {} steps of {} robots; it breaks {}", run.steps.size(), run.robots,
+                            run.property)};
 }
 
-std::string Name(const trace::Message& m) { return fmt::format("{} at t = {:.6f} s", m.topic, static_cast<double>(m.time) * 1e-9); }
+std::string Name(const trace::Message& m) {
+  return fmt::format("{} at t = {:.6f} s", m.topic, static_cast<double>(m.time) * 1e-9);
+}
 
 // Where do two traces differ first?
 std::string FirstDifference(std::string_view a, std::string_view b) {
@@ -86,12 +90,14 @@ std::string FirstDifference(std::string_view a, std::string_view b) {
     if (i >= first.size())
       result = fmt::format("the run goes on: {}", Name(m));
     else if (first[i].time != m.time || first[i].bytes != std::string(m.topic) + std::string(m.bytes))
-      result = first[i].name == Name(m) ? first[i].name : fmt::format("{} in the trace, {} now", first[i].name, Name(m));
+      result = first[i].name == Name(m) ? first[i].name
+                                        : fmt::format("{} in the trace, {} now", first[i].name, Name(m));
     ++i;
     return result.empty();
   });
   if (!compare.ok()) return compare.error().message;
-  if (result.empty() && i < first.size()) result = fmt::format("the run ends earlier: {} is missing", first[i].name);
+  if (result.empty() && i < first.size())
+    result = fmt::format("the run ends earlier: {} is missing", first[i].name);
   return result.empty() ? "the messages are the same; the files differ in their index" : result;
 }
 
@@ -115,24 +121,30 @@ Verdict ReplayTrace(const std::string& bytes, Session& session) {
   options.seed = run["seed"].get<uint64_t>();
   options.duration = run["duration"].get<double>();
   koord::Program program;
-  koord::Parse(session.sources, session.sources.Add(options.program_name, options.program), program, session.diagnostics);
+  koord::Parse(session.sources, session.sources.Add(options.program_name, options.program), program,
+               session.diagnostics);
   if (!options.spec.empty())
-    koord::Parse(session.sources, session.sources.Add("specification", options.spec), program, session.diagnostics);
+    koord::Parse(session.sources, session.sources.Add("specification", options.spec), program,
+                 session.diagnostics);
   if (session.diagnostics.has_errors()) return {false, "the program that the trace keeps cannot be used"};
   const koord::Model model = koord::Check(program, session.diagnostics);
   const diag::FileId file = session.sources.Add("fleet", options.fleet);
   const sim::Fleet fleet = sim::ReadFleet(session.sources, file, session.diagnostics);
-  if (session.diagnostics.has_errors()) return {false, "the program or the fleet that the trace keeps cannot be used"};
+  if (session.diagnostics.has_errors())
+    return {false, "the program or the fleet that the trace keeps cannot be used"};
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / fmt::format("rondo-replay-{}.mcap", ::getpid());
   auto writer = trace::Writer::Open(path.string());
-  if (!writer.ok()) return {false, fmt::format("cannot write `{}`: {}", path.string(), writer.error().message)};
+  if (!writer.ok())
+    return {false, fmt::format("cannot write `{}`: {}", path.string(), writer.error().message)};
   sim::SimulationReport report;
   {
     ProgressLine line;
     const InterruptScope interrupt(options.stop);
     trace::Writer again = std::move(writer).value();
-    options.progress = [&](double time, double end) { line.Show(fmt::format("[{:.0f} of {:.0f} s]", time, end)); };
+    options.progress = [&](double time, double end) {
+      line.Show(fmt::format("[{:.0f} of {:.0f} s]", time, end));
+    };
     diag::Diagnostics said;  // what the run violates was said when it was made
     report = sim::Simulate(model, fleet, options, &again, said);
     const auto done = again.Finish();
@@ -144,8 +156,8 @@ Verdict ReplayTrace(const std::string& bytes, Session& session) {
   if (report.ended == "interrupted") return {false, "interrupted"};
   if (!fresh.ok()) return {false, fresh.error().message};
   if (fresh.value() == bytes)
-    return {true, fmt::format("the same run, bit for bit: {:.6g} s, {} rounds, {} bytes", report.time, report.rounds,
-                              bytes.size())};
+    return {true, fmt::format("the same run, bit for bit: {:.6g} s, {} rounds, {} bytes", report.time,
+                              report.rounds, bytes.size())};
   return {false, "differs: " + FirstDifference(bytes, fresh.value())};
 }
 
@@ -156,7 +168,8 @@ int Run(const Options& options) {
     PrintFailure(fmt::format("cannot read `{}`: {}", options.file, bytes.error().message));
     return kRejected;
   }
-  if (bytes.value().starts_with("\x89MCAP")) return Tell(options, ReplayTrace(bytes.value(), session), session);
+  if (bytes.value().starts_with("\x89MCAP"))
+    return Tell(options, ReplayTrace(bytes.value(), session), session);
   const auto run = LoadRun(options.file);
   if (!run.ok()) {
     PrintFailure(fmt::format("`{}`: {}", options.file, run.error().message));
@@ -170,7 +183,8 @@ int Run(const Options& options) {
 void AddReplayVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("replay", "run a trace or counterexample again, and compare");
-  verb->add_option("FILE", options->file, "a trace of `rondo simulate`, or a run that `rondo explore` saved")->required();
+  verb->add_option("FILE", options->file, "a trace of `rondo simulate`, or a run that `rondo explore` saved")
+      ->required();
   verb->add_flag("--json", options->json, "the result as JSON on standard output");
   verb->footer(
       "examples:\n  rondo replay mapping.mcap\n  rondo replay run.json\n\n"

@@ -22,7 +22,8 @@ std::string DefaultRunFile(const std::string& program, const std::string& proper
 namespace {
 
 // Lists and texts come from a heap of their own: counterexamples have none.
-nlohmann::json ValuesToJson(const koord::Model& model, size_t v, const std::vector<koord::semantics::Word>& words) {
+nlohmann::json ValuesToJson(const koord::Model& model, size_t v,
+                            const std::vector<koord::semantics::Word>& words) {
   koord::semantics::Heap heap;
   const lang::TypeId type = model.variables[v].type;
   const uint32_t width = koord::semantics::Layout::Width(model.types, type);
@@ -35,13 +36,16 @@ nlohmann::json ValuesToJson(const koord::Model& model, size_t v, const std::vect
 }  // namespace
 
 void KeepParameters(RunFile& run, const koord::Model& model, const koord::semantics::TeamOptions& options) {
-  for (const auto& [v, words] : options.params) run.params[model.variables[v].name] = ValuesToJson(model, v, words);
-  for (const auto& [v, words] : options.choices) run.choices[model.variables[v].name] = ValuesToJson(model, v, words);
+  for (const auto& [v, words] : options.params)
+    run.params[model.variables[v].name] = ValuesToJson(model, v, words);
+  for (const auto& [v, words] : options.choices)
+    run.choices[model.variables[v].name] = ValuesToJson(model, v, words);
 }
 
 void AdoptParameters(const RunFile& run, const koord::Model& model, koord::semantics::TeamOptions& options) {
   koord::semantics::Heap heap;
-  const auto adopt = [&](const nlohmann::json& given, std::map<size_t, std::vector<koord::semantics::Word>>& to) {
+  const auto adopt = [&](const nlohmann::json& given,
+                         std::map<size_t, std::vector<koord::semantics::Word>>& to) {
     for (size_t v = 0; v < model.variables.size(); ++v) {
       const auto it = given.find(model.variables[v].name);
       if (it == given.end() || !it->is_array()) continue;
@@ -58,18 +62,15 @@ void AdoptParameters(const RunFile& run, const koord::Model& model, koord::seman
 base::Result<bool> SaveRun(const std::string& path, const RunFile& run) {
   std::error_code ignored;
   const auto absolute = [&](const std::string& file) {
-    return file.empty() ? std::string() : std::filesystem::absolute(file, ignored).lexically_normal().string();
+    return file.empty() ? std::string()
+                        : std::filesystem::absolute(file, ignored).lexically_normal().string();
   };
-  const nlohmann::json file{{"format", "rondo-run/1"},
-                            {"engine", run.engine},
-                            {"program", absolute(run.program)},
-                            {"spec", absolute(run.spec)},
-                            {"robots", run.robots},
-                            {"breaks", run.property},
-                            {"params", run.params},
-                            {"choices", run.choices},
-                            {"steps", run.steps}};
-  return base::WriteFileAtomically(path, file.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  const nlohmann::json file{
+      {"format", "rondo-run/1"},    {"engine", run.engine},   {"program", absolute(run.program)},
+      {"spec", absolute(run.spec)}, {"robots", run.robots},   {"breaks", run.property},
+      {"params", run.params},       {"choices", run.choices}, {"steps", run.steps}};
+  return base::WriteFileAtomically(path,
+                                   file.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 base::Result<RunFile> LoadRun(const std::string& path) {
@@ -80,7 +81,8 @@ base::Result<RunFile> LoadRun(const std::string& path) {
   const auto text_at = [&](const char* key) {
     return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : std::string();
   };
-  if (!json.is_object() || text_at("format") != "rondo-run/1") return base::Error{"this is not a run of Rondo's"};
+  if (!json.is_object() || text_at("format") != "rondo-run/1")
+    return base::Error{"this is not a run of Rondo's"};
   if (!json.contains("robots") || !json["robots"].is_number_unsigned() || json["robots"] < 1 ||
       json["robots"] > 64 || !json.contains("steps") || !json["steps"].is_array()) {
     return base::Error{"the run is not complete"};
@@ -88,8 +90,8 @@ base::Result<RunFile> LoadRun(const std::string& path) {
   const auto object_at = [&](const char* key) {
     return json.contains(key) && json[key].is_object() ? json[key] : nlohmann::json::object();
   };
-  return RunFile{text_at("program"), text_at("spec"),   json["robots"].get<size_t>(), text_at("breaks"),
-                 text_at("engine"),  json["steps"],     object_at("params"),          object_at("choices")};
+  return RunFile{text_at("program"), text_at("spec"), json["robots"].get<size_t>(), text_at("breaks"),
+                 text_at("engine"),  json["steps"],   object_at("params"),          object_at("choices")};
 }
 
 }  // namespace rondo::driver

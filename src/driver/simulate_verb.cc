@@ -68,18 +68,20 @@ nlohmann::json ToJson(const sim::SimulationReport& report) {
   nlohmann::json violations = nlohmann::json::array();
   for (const sim::Violation& v : report.violations)
     violations.push_back({{"what", v.what}, {"robot", v.robot}, {"first", v.first}, {"count", v.count}});
-  return {{"time", report.time},
-          {"rounds", report.rounds},
-          {"events", report.events},
-          {"ended", report.ended},
-          {"collisions", report.collisions},
-          {"least_between_robots", Finite(report.least_between_robots)},
-          {"least_to_obstacles", Finite(report.least_to_obstacles)},
-          {"violations", violations},
-          {"unchecked", report.unchecked},
-          {"plans", report.plans},
-          {"map", {{"known", report.known_cells}, {"wrong", report.wrong_cells}, {"missing", report.reachable_unknown}}},
-          {"log", report.log}};
+  return {
+      {"time", report.time},
+      {"rounds", report.rounds},
+      {"events", report.events},
+      {"ended", report.ended},
+      {"collisions", report.collisions},
+      {"least_between_robots", Finite(report.least_between_robots)},
+      {"least_to_obstacles", Finite(report.least_to_obstacles)},
+      {"violations", violations},
+      {"unchecked", report.unchecked},
+      {"plans", report.plans},
+      {"map",
+       {{"known", report.known_cells}, {"wrong", report.wrong_cells}, {"missing", report.reachable_unknown}}},
+      {"log", report.log}};
 }
 
 int Run(const Options& options) {
@@ -91,7 +93,8 @@ int Run(const Options& options) {
   if (loaded) {
     const auto file = ReadSource(files.fleet, session);
     if (!file) {
-      PrintFailure(fmt::format("a simulation needs a fleet: robots, models and a world; see docs/simulation.md"));
+      PrintFailure(
+          fmt::format("a simulation needs a fleet: robots, models and a world; see docs/simulation.md"));
       return kRejected;
     }
     fleet = sim::ReadFleet(session.sources, *file, session.diagnostics);
@@ -135,7 +138,8 @@ int Run(const Options& options) {
       const double seconds = std::chrono::duration<double>(now - begin).count();
       line.Show(fmt::format("[{:.0f} of {:.0f} s] {:.1f} x real time", time, end, time / seconds));
     };
-    report = sim::Simulate(loaded->model, fleet, simulation, writer ? &*writer : nullptr, session.diagnostics);
+    report =
+        sim::Simulate(loaded->model, fleet, simulation, writer ? &*writer : nullptr, session.diagnostics);
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (!report.ran) return finish_early(kRejected);
@@ -162,8 +166,8 @@ int Run(const Options& options) {
     PrintJson(out);
     return status;
   }
-  Print(fmt::format("{}: {}, seed {}\n{}", files.program, Count(fleet.robots.size(), "robot"), simulation.seed,
-                    Summary(report, seconds)));
+  Print(fmt::format("{}: {}, seed {}\n{}", files.program, Count(fleet.robots.size(), "robot"),
+                    simulation.seed, Summary(report, seconds)));
   if (written && writer) Print(fmt::format("trace: {}\n", options.trace));
   PrintDiagnostics(session.sources, session.diagnostics);
   return status;
@@ -174,9 +178,10 @@ int Run(const Options& options) {
 void AddSimulateVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("simulate", "run a Koord program on simulated robots, in virtual time");
-  verb->add_option("FILE", options->file,
-                   "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet, `NAME.spec` the "
-                   "specification")
+  verb->add_option(
+          "FILE", options->file,
+          "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet, `NAME.spec` the "
+          "specification")
       ->required();
   verb->add_option("--fleet", options->fleet, "the fleet, if it is not beside the program");
   verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
@@ -184,7 +189,8 @@ void AddSimulateVerb(CLI::App& app, int& status) {
   verb->add_option("--duration", options->duration, "seconds; default: as the fleet says")
       ->check(CLI::Range(1e-3, 1e7));
   verb->add_option("--trace", options->trace, "write everything that happens into this file (MCAP)");
-  verb->add_option("--jobs", options->jobs, "threads; default: one for each core. The run does not depend on it");
+  verb->add_option("--jobs", options->jobs,
+                   "threads; default: one for each core. The run does not depend on it");
   verb->add_flag("--fail-on-collision", options->fail_on_collision, "exit status 1 if robots touch anything");
   verb->add_flag("--json", options->json, "the result as JSON on standard output");
   verb->footer(
@@ -192,7 +198,8 @@ void AddSimulateVerb(CLI::App& app, int& status) {
       "  rondo plot mapping.mcap --map --svg map.svg\n"
       "  rondo replay mapping.mcap\n\n"
       "Every invariant, assumption and summary is checked while the program runs.\n"
-      "exit status: 0 nothing was violated, 1 something was, 3 not everything could be checked, or interrupted");
+      "exit status: 0 nothing was violated, 1 something was, 3 not everything could be checked, or "
+      "interrupted");
   verb->callback([options, &status] { status = Run(*options); });
 }
 

@@ -4,7 +4,8 @@
 
 namespace rondo::driver {
 
-SimulationFiles FindSimulationFiles(const std::string& file, const std::string& spec, const std::string& fleet) {
+SimulationFiles FindSimulationFiles(const std::string& file, const std::string& spec,
+                                    const std::string& fleet) {
   std::filesystem::path stem(file);
   if (stem.extension() == ".koord" || stem.extension() == ".toml") stem.replace_extension();
   SimulationFiles files{file, spec, fleet};
@@ -12,7 +13,8 @@ SimulationFiles FindSimulationFiles(const std::string& file, const std::string& 
   const std::filesystem::path program(stem.string() + ".koord");
   // A program may have any name; one without an extension is looked for beside the others.
   if (std::filesystem::path(file).extension() != ".koord" &&
-      (std::filesystem::path(file).extension() == ".toml" || !std::filesystem::is_regular_file(file, ignored)))
+      (std::filesystem::path(file).extension() == ".toml" ||
+       !std::filesystem::is_regular_file(file, ignored)))
     files.program = program.string();
   if (files.fleet.empty()) files.fleet = stem.string() + ".toml";
   return files;
@@ -23,7 +25,9 @@ void KeepTexts(const SimulationFiles& files, const Session& session, sim::Simula
   for (size_t f = 0; f < session.sources.size(); ++f) {
     const diag::FileId id(f);
     const std::string path(session.sources.path(id));
-    std::string& text = path == files.program ? options.program : path == files.fleet ? options.fleet : options.spec;
+    std::string& text = path == files.program ? options.program
+                        : path == files.fleet ? options.fleet
+                                              : options.spec;
     text = session.sources.text(id);
   }
 }

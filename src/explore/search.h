@@ -103,8 +103,9 @@ SearchResult Search(S& system, const SearchOptions& options) {
     for (; at < level_end && !done; ++at) {
       current = at;
       const std::span<const Word> here =
-          options.compact ? std::span<const Word>(frontier.data() + static_cast<size_t>(at - level_begin) * words, words)
-                          : visited[at];
+          options.compact
+              ? std::span<const Word>(frontier.data() + static_cast<size_t>(at - level_begin) * words, words)
+              : visited[at];
       state.assign(here.begin(), here.end());
       if (options.deadlocks && system.Deadlocked(state)) {
         bad = at;

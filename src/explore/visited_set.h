@@ -33,7 +33,7 @@ class VisitedSet {
   size_t words_;
   bool compact_;
   size_t count_ = 0;
-  std::vector<Word> states_;    // exact: all words; compact: the hashes
+  std::vector<Word> states_;     // exact: all words; compact: the hashes
   std::vector<uint32_t> table_;  // open addressing: number + 1
 };
 

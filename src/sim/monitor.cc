@@ -24,7 +24,8 @@ void Monitor::Violated(double time, const std::string& what, int robot, diag::Sp
     report_(*it, false);
     return;
   }
-  const bool first = std::none_of(violations_.begin(), violations_.end(), [&](const Violation& v) { return v.what == what; });
+  const bool first = std::none_of(violations_.begin(), violations_.end(),
+                                  [&](const Violation& v) { return v.what == what; });
   violations_.push_back({what, robot, time, 1});
   if (first) {
     const std::string who = robot < 0 ? "" : fmt::format(" by robot {}", robot);
@@ -57,7 +58,8 @@ void Monitor::Settled(double time, std::span<Word> state) {
 void Monitor::During(double time, std::span<Word> state, std::span<const Word> settled) {
   koord::semantics::Machine& machine = team_.machine();
   machine.SetMemory(state.data(), settled.data());
-  for (const FormulaCode& f : team_.port_facts()) Formula(time, f, "assumption", Kind::kKoordAssumptionBroken);
+  for (const FormulaCode& f : team_.port_facts())
+    Formula(time, f, "assumption", Kind::kKoordAssumptionBroken);
   // Formulas only read.
   auto* const before = const_cast<Word*>(settled.data());  // NOLINT
   for (const PromiseCode& p : team_.promises()) {
@@ -66,7 +68,8 @@ void Monitor::During(double time, std::span<Word> state, std::span<const Word> s
       if (p.when != 0 && !machine.RunFormula(p.when, r)) continue;
       machine.SetMemory(state.data(), settled.data());
       if (machine.RunFormula(p.always, r)) continue;
-      Violated(time, fmt::format("assumption `{}`", p.name), static_cast<int>(r), p.span, Kind::kKoordAssumptionBroken);
+      Violated(time, fmt::format("assumption `{}`", p.name), static_cast<int>(r), p.span,
+               Kind::kKoordAssumptionBroken);
     }
   }
   Settled(time, state);

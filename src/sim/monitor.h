@@ -30,7 +30,8 @@ class Monitor {
   const std::vector<Violation>& violations() const { return violations_; }
 
  private:
-  void Formula(double time, const koord::semantics::FormulaCode& formula, const std::string& kind, diag::Kind what);
+  void Formula(double time, const koord::semantics::FormulaCode& formula, const std::string& kind,
+               diag::Kind what);
   void Violated(double time, const std::string& what, int robot, diag::Span span, diag::Kind kind);
 
   koord::semantics::Team& team_;

@@ -40,12 +40,20 @@ void Recorder::World(const Fleet& fleet) {
   std::vector<trace::Marker> markers;
   constexpr std::array<float, 4> kGrey{0.5F, 0.5F, 0.5F, 1.0F};
   for (const Box& b : fleet.world.boxes) {
-    markers.push_back({"obstacles", static_cast<int32_t>(markers.size()), trace::Marker::kCube,
-                       {b.centre, {0, 0, 0, 1}}, b.size, kGrey});
+    markers.push_back({"obstacles",
+                       static_cast<int32_t>(markers.size()),
+                       trace::Marker::kCube,
+                       {b.centre, {0, 0, 0, 1}},
+                       b.size,
+                       kGrey});
   }
   for (const Cylinder& c : fleet.world.cylinders) {
-    markers.push_back({"obstacles", static_cast<int32_t>(markers.size()), trace::Marker::kCylinder,
-                       {c.centre, {0, 0, 0, 1}}, {2 * c.radius, 2 * c.radius, c.height}, kGrey});
+    markers.push_back({"obstacles",
+                       static_cast<int32_t>(markers.size()),
+                       trace::Marker::kCylinder,
+                       {c.centre, {0, 0, 0, 1}},
+                       {2 * c.radius, 2 * c.radius, c.height},
+                       kGrey});
   }
   writer_->Message(Channel("/world", trace::kMarkerArray, "cdr"), 0, trace::MarkerArray(0, markers));
 }
@@ -60,7 +68,8 @@ void Recorder::Pose(double time, size_t robot, const Body& body) {
 void Recorder::Path(double time, size_t robot, const std::vector<Point>& path) {
   if (!on()) return;
   const uint64_t at = Nanoseconds(time);
-  writer_->Message(Channel("/" + fleet_.robots[robot].name + "/path", trace::kPath, "cdr"), at, trace::Path(at, path));
+  writer_->Message(Channel("/" + fleet_.robots[robot].name + "/path", trace::kPath, "cdr"), at,
+                   trace::Path(at, path));
 }
 
 void Recorder::Scan(double time, size_t robot, const Rays& rays, double yaw, double period) {
@@ -79,8 +88,11 @@ void Recorder::Scan(double time, size_t robot, const Rays& rays, double yaw, dou
 
 void Recorder::Map(double time, const GridMap& map) {
   if (!on()) return;
-  trace::Grid grid{static_cast<float>(map.cell), static_cast<uint32_t>(map.columns), static_cast<uint32_t>(map.rows),
-                   {map.x0, map.y0}, {}};
+  trace::Grid grid{static_cast<float>(map.cell),
+                   static_cast<uint32_t>(map.columns),
+                   static_cast<uint32_t>(map.rows),
+                   {map.x0, map.y0},
+                   {}};
   for (const int8_t c : map.cells) grid.cells.push_back(static_cast<int8_t>(c > 0 ? 100 : c));
   const uint64_t at = Nanoseconds(time);
   writer_->Message(Channel("/map", trace::kOccupancyGrid, "cdr"), at, trace::OccupancyGrid(at, grid));

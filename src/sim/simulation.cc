@@ -67,11 +67,14 @@ class Run {
  private:
   // -- before the first round
 
-  std::optional<std::vector<Word>> ValueOf(const std::string& name, const FleetValue& given, size_t variable) {
-    auto words = koord::semantics::FromJson(model_.types, heap_->heap(), model_.variables[variable].type, given.value);
+  std::optional<std::vector<Word>> ValueOf(const std::string& name, const FleetValue& given,
+                                           size_t variable) {
+    auto words =
+        koord::semantics::FromJson(model_.types, heap_->heap(), model_.variables[variable].type, given.value);
     if (!words) {
-      diagnostics_.Report(Kind::kFleetValue, given.span,
-                          fmt::format("`{}` must be a `{}`", name, model_.types.Name(model_.variables[variable].type)));
+      diagnostics_.Report(
+          Kind::kFleetValue, given.span,
+          fmt::format("`{}` must be a `{}`", name, model_.types.Name(model_.variables[variable].type)));
     }
     return words;
   }
@@ -91,19 +94,20 @@ class Run {
     for (const auto& [name, given] : fleet_.params) {
       const int v = Find(name);
       if (v < 0 || model_.variables[static_cast<size_t>(v)].kind != koord::VariableKind::kParam) {
-        diagnostics_.Report(Kind::kFleetValue, given.span, fmt::format("the program has no parameter `{}`", name));
+        diagnostics_.Report(Kind::kFleetValue, given.span,
+                            fmt::format("the program has no parameter `{}`", name));
         continue;
       }
       // Parameters have no lists that need the team's heap but its own: numbers, points, truth values.
       koord::semantics::Heap scratch;
-      const auto words = koord::semantics::FromJson(model_.types, scratch,
-                                                    model_.variables[static_cast<size_t>(v)].type, given.value);
+      const auto words = koord::semantics::FromJson(
+          model_.types, scratch, model_.variables[static_cast<size_t>(v)].type, given.value);
       if (words) {
         options.params[static_cast<size_t>(v)] = *words;
       } else {
-        diagnostics_.Report(
-            Kind::kFleetValue, given.span,
-            fmt::format("`{}` must be a `{}`", name, model_.types.Name(model_.variables[static_cast<size_t>(v)].type)));
+        diagnostics_.Report(Kind::kFleetValue, given.span,
+                            fmt::format("`{}` must be a `{}`", name,
+                                        model_.types.Name(model_.variables[static_cast<size_t>(v)].type)));
       }
     }
     team_ = Team::Make(model_, options, diagnostics_);
@@ -111,7 +115,9 @@ class Run {
     if (team_ == nullptr || diagnostics_.errors() != before) return false;
     for (const auto& part : team_->unchecked()) {
       report_.unchecked.push_back(part.name);
-      diagnostics_.Report(Kind::kKoordNotChecked, part.span, fmt::format("runs are not checked against `{}`", part.name))
+      diagnostics_
+          .Report(Kind::kKoordNotChecked, part.span,
+                  fmt::format("runs are not checked against `{}`", part.name))
           .Under(part.reason);
     }
     team_->machine().CheckSummaries(true);
@@ -203,11 +209,12 @@ class Run {
       const int found = Find(name);
       const auto v = static_cast<size_t>(found);
       const bool good = found >= 0 && model_.variables[v].kind != koord::VariableKind::kSensor &&
-                        model_.variables[v].kind != koord::VariableKind::kParam && team_->layout()[v].exists &&
-                        team_->layout()[v].length == 0;
+                        model_.variables[v].kind != koord::VariableKind::kParam &&
+                        team_->layout()[v].exists && team_->layout()[v].length == 0;
       if (!good) {
-        diagnostics_.Report(Kind::kFleetValue, given.span,
-                            fmt::format("the program has no variable `{}` that can start with a value", name));
+        diagnostics_.Report(
+            Kind::kFleetValue, given.span,
+            fmt::format("the program has no variable `{}` that can start with a value", name));
         continue;
       }
       const auto words = ValueOf(name, given, v);
@@ -363,7 +370,8 @@ class Run {
       if (ports_[p].role == PortRole::kPath)
         path = DecodePath(team_->heap(), *at);
       else
-        path = {{koord::semantics::ToFloat(at[0]), koord::semantics::ToFloat(at[1]), koord::semantics::ToFloat(at[2])}};
+        path = {{koord::semantics::ToFloat(at[0]), koord::semantics::ToFloat(at[1]),
+                 koord::semantics::ToFloat(at[2])}};
       if (ports_[p].role == PortRole::kPath || path != bodies_[robot]->path()) {
         if (ports_[p].role == PortRole::kPath) recorder_.Path(t, robot, path);
         bodies_[robot]->Follow(std::move(path));
@@ -384,7 +392,8 @@ class Run {
     const uint64_t monitor = Every(fleet_.monitor, dt);
     const uint64_t pose = Every(1 / fleet_.pose_rate, dt);
     const uint64_t scan = Every(1 / fleet_.lidar.rate, dt);
-    const bool scans = std::any_of(ports_.begin(), ports_.end(), [](const Port& p) { return p.role == PortRole::kScans; });
+    const bool scans =
+        std::any_of(ports_.begin(), ports_.end(), [](const Port& p) { return p.role == PortRole::kScans; });
     settled_ = state_;
     for (auto& s : scans_) s.clear();
     for (uint64_t i = 0; i < steps;) {
@@ -455,7 +464,8 @@ class Run {
         double d = fleet_.world.Cast(from, rays.first + b * rays.step, rays.range);
         if (std::isfinite(d)) {
           if (fleet_.lidar.noise > 0) d += fleet_.lidar.noise * Normal(noise_[r]);
-          if (fleet_.lidar.resolution > 0) d = std::round(d / fleet_.lidar.resolution) * fleet_.lidar.resolution;
+          if (fleet_.lidar.resolution > 0)
+            d = std::round(d / fleet_.lidar.resolution) * fleet_.lidar.resolution;
           d = std::max(d, 0.0);
         }
         rays.distances[static_cast<size_t>(b)] = d;
@@ -506,7 +516,8 @@ class Run {
   std::optional<GridMap> SharedMap() const {
     for (size_t v = 0; v < model_.variables.size(); ++v) {
       const koord::Variable& variable = model_.variables[v];
-      if (variable.kind != koord::VariableKind::kAllwrite || model_.types[variable.type].kind != lang::TypeKind::kOpaque)
+      if (variable.kind != koord::VariableKind::kAllwrite ||
+          model_.types[variable.type].kind != lang::TypeKind::kOpaque)
         continue;
       if (auto map = DecodeMap(team_->heap(), state_[team_->layout().Address(v, 0)])) return map;
     }
@@ -526,11 +537,13 @@ class Run {
     }
     if (fleet_.until == "mapped" && map) {
       Point nowhere{};
-      const bool more = std::any_of(bodies_.begin(), bodies_.end(),
-                                    [&](const auto& body) { return Frontier(*map, body->position(), nowhere); });
+      const bool more = std::any_of(bodies_.begin(), bodies_.end(), [&](const auto& body) {
+        return Frontier(*map, body->position(), nowhere);
+      });
       const int column = map->Column(bodies_[0]->position()[0]);
       const int row = map->Row(bodies_[0]->position()[1]);
-      if (!more && map->Inside(column, row) && map->At(column, row) == GridMap::kEmpty) report_.ended = "mapped";
+      if (!more && map->Inside(column, row) && map->At(column, row) == GridMap::kEmpty)
+        report_.ended = "mapped";
     }
     if (team_->heap().words_in_use() > collect_at_) {
       const std::span<const Word> roots[] = {state_, settled_};
@@ -541,7 +554,8 @@ class Run {
   }
 
   // Cells that a robot could come to from where the robots are.
-  static std::vector<bool> Reachable(const GridMap& map, const World& world, const std::vector<Point>& starts) {
+  static std::vector<bool> Reachable(const GridMap& map, const World& world,
+                                     const std::vector<Point>& starts) {
     std::vector<bool> seen(map.cells.size());
     std::vector<std::pair<int, int>> stack;
     for (const Point& p : starts) stack.emplace_back(map.Column(p[0]), map.Row(p[1]));
@@ -570,7 +584,8 @@ class Run {
           const int8_t cell = map->At(c, r);
           if (cell != GridMap::kUnknown) ++report_.known_cells;
           if (cell == GridMap::kOccupied && !TrulyOccupied(*map, fleet_.world, c, r)) ++report_.wrong_cells;
-          const size_t at = static_cast<size_t>(r) * static_cast<size_t>(map->columns) + static_cast<size_t>(c);
+          const size_t at =
+              static_cast<size_t>(r) * static_cast<size_t>(map->columns) + static_cast<size_t>(c);
           if (cell == GridMap::kUnknown && reachable[at]) ++report_.reachable_unknown;
         }
       }

@@ -15,8 +15,8 @@ namespace rondo::sim {
 
 struct SimulationOptions {
   uint64_t seed = 1;
-  double duration = 0;    ///< seconds; 0: as the fleet says
-  unsigned jobs = 0;      ///< threads; 0: one for each core. The result does not depend on it
+  double duration = 0;  ///< seconds; 0: as the fleet says
+  unsigned jobs = 0;    ///< threads; 0: one for each core. The result does not depend on it
   bool fail_on_collision = false;
   /// What the trace keeps about where the run came from: texts of program, specification and fleet.
   std::string program, spec, fleet, program_name;
@@ -33,11 +33,11 @@ struct Violation {
 };
 
 struct SimulationReport {
-  bool ran = false;          ///< false: the program cannot be simulated; reported
-  double time = 0;           ///< seconds simulated
+  bool ran = false;  ///< false: the program cannot be simulated; reported
+  double time = 0;   ///< seconds simulated
   uint64_t rounds = 0;
   uint64_t events = 0;
-  uint64_t collisions = 0;   ///< beginnings of contacts
+  uint64_t collisions = 0;  ///< beginnings of contacts
   double first_collision = -1;
   std::string first_pair;
   /// Metres between surfaces; infinite if there is nothing, or (beyond 200 robots) if it is not measured.
@@ -47,10 +47,10 @@ struct SimulationReport {
   std::vector<std::string> unchecked;  ///< parts of the specification that runs are not checked against
   std::string ended;                   ///< `time`, `stopped`, `mapped`, `interrupted`, `failed`
   uint64_t plans = 0;
-  uint64_t known_cells = 0;            ///< of the shared map, if there is one
+  uint64_t known_cells = 0;  ///< of the shared map, if there is one
   uint64_t wrong_cells = 0;
   uint64_t reachable_unknown = 0;
-  std::vector<std::string> log;        ///< what robots wrote to streams: the last lines
+  std::vector<std::string> log;  ///< what robots wrote to streams: the last lines
 };
 
 /// Runs a Koord program on a simulated fleet, in virtual time. Everything that happens is written to the

@@ -17,7 +17,8 @@ constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 
 class Reader {
  public:
-  Reader(std::string_view file, const std::function<bool(const Message&)>& visit) : file_(file), visit_(visit) {}
+  Reader(std::string_view file, const std::function<bool(const Message&)>& visit)
+      : file_(file), visit_(visit) {}
 
   base::Result<bool> Run() {
     if (!file_.starts_with(kMagic)) return base::Error{"this is not an MCAP file"};
@@ -76,8 +77,8 @@ class Reader {
         if (!id || !sequence || !time || !published) return false;
         const auto channel = channels_.find(*id);
         if (channel == channels_.end()) return false;
-        more_ = visit_({channel->second.topic, schemas_[channel->second.schema], channel->second.encoding, *time,
-                        c.rest()});
+        more_ = visit_({channel->second.topic, schemas_[channel->second.schema], channel->second.encoding,
+                        *time, c.rest()});
         return true;
       }
       case 0x06: {  // chunk

@@ -4,9 +4,9 @@
 
 namespace rondo::trace {
 
-// The definitions of the interfaces, with those that they use behind a line of signs, as `ros2msg` wants them.
-#define RONDO_SEPARATOR \
-  "================================================================================\n"
+// The definitions of the interfaces, with those that they use behind a line of signs, as `ros2msg` wants
+// them.
+#define RONDO_SEPARATOR "================================================================================\n"
 #define RONDO_TIME RONDO_SEPARATOR "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
 #define RONDO_DURATION RONDO_SEPARATOR "MSG: builtin_interfaces/Duration\nint32 sec\nuint32 nanosec\n"
 #define RONDO_HEADER RONDO_SEPARATOR "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
@@ -14,16 +14,18 @@ namespace rondo::trace {
 #define RONDO_VECTOR RONDO_SEPARATOR "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n"
 #define RONDO_QUATERNION \
   RONDO_SEPARATOR "MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"
-#define RONDO_POSE                                                                                 \
-  RONDO_SEPARATOR "MSG: geometry_msgs/Pose\ngeometry_msgs/Point position\ngeometry_msgs/Quaternion " \
-                  "orientation\n" RONDO_POINT RONDO_QUATERNION
+#define RONDO_POSE                                                                       \
+  RONDO_SEPARATOR                                                                        \
+      "MSG: geometry_msgs/Pose\ngeometry_msgs/Point position\ngeometry_msgs/Quaternion " \
+      "orientation\n" RONDO_POINT RONDO_QUATERNION
 
-const Schema kPoseStamped{"geometry_msgs/msg/PoseStamped", "ros2msg",
-                          "std_msgs/Header header\ngeometry_msgs/Pose pose\n" RONDO_HEADER RONDO_TIME RONDO_POSE};
-const Schema kPath{"nav_msgs/msg/Path", "ros2msg",
-                   "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n" RONDO_HEADER RONDO_TIME
-                       RONDO_SEPARATOR
-                   "MSG: geometry_msgs/PoseStamped\nstd_msgs/Header header\ngeometry_msgs/Pose pose\n" RONDO_POSE};
+const Schema kPoseStamped{
+    "geometry_msgs/msg/PoseStamped", "ros2msg",
+    "std_msgs/Header header\ngeometry_msgs/Pose pose\n" RONDO_HEADER RONDO_TIME RONDO_POSE};
+const Schema kPath{
+    "nav_msgs/msg/Path", "ros2msg",
+    "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n" RONDO_HEADER RONDO_TIME RONDO_SEPARATOR
+    "MSG: geometry_msgs/PoseStamped\nstd_msgs/Header header\ngeometry_msgs/Pose pose\n" RONDO_POSE};
 const Schema kLaserScan{
     "sensor_msgs/msg/LaserScan", "ros2msg",
     "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 "
@@ -37,8 +39,8 @@ const Schema kMarkerArray{
     "color\nbuiltin_interfaces/Duration lifetime\nbool frame_locked\ngeometry_msgs/Point[] "
     "points\nstd_msgs/ColorRGBA[] colors\nstring texture_resource\nsensor_msgs/CompressedImage "
     "texture\nvisualization_msgs/UVCoordinate[] uv_coordinates\nstring text\nstring "
-    "mesh_resource\nvisualization_msgs/MeshFile mesh_file\nbool mesh_use_embedded_materials\n" RONDO_HEADER RONDO_TIME
-        RONDO_DURATION RONDO_POSE RONDO_VECTOR RONDO_SEPARATOR
+    "mesh_resource\nvisualization_msgs/MeshFile mesh_file\nbool mesh_use_embedded_materials\n" RONDO_HEADER
+        RONDO_TIME RONDO_DURATION RONDO_POSE RONDO_VECTOR RONDO_SEPARATOR
     "MSG: std_msgs/ColorRGBA\nfloat32 r\nfloat32 g\nfloat32 b\nfloat32 a\n" RONDO_SEPARATOR
     "MSG: sensor_msgs/CompressedImage\nstd_msgs/Header header\nstring format\nuint8[] data\n" RONDO_SEPARATOR
     "MSG: visualization_msgs/UVCoordinate\nfloat32 u\nfloat32 v\n" RONDO_SEPARATOR
@@ -47,7 +49,8 @@ const Schema kMarkerArray{
 const Schema kOccupancyGrid{
     "nav_msgs/msg/OccupancyGrid", "ros2msg",
     "std_msgs/Header header\nnav_msgs/MapMetaData info\nint8[] data\n" RONDO_HEADER RONDO_TIME RONDO_SEPARATOR
-    "MSG: nav_msgs/MapMetaData\nbuiltin_interfaces/Time map_load_time\nfloat32 resolution\nuint32 width\nuint32 "
+    "MSG: nav_msgs/MapMetaData\nbuiltin_interfaces/Time map_load_time\nfloat32 resolution\nuint32 "
+    "width\nuint32 "
     "height\ngeometry_msgs/Pose origin\n" RONDO_POSE};
 
 namespace {
@@ -141,7 +144,8 @@ std::string LaserScan(uint64_t time, const Scan& scan) {
   Cdr cdr;
   cdr.Header(time, scan.frame);
   cdr.Value(scan.angle_min);
-  cdr.Value(scan.angle_min + scan.angle_step * static_cast<float>(scan.ranges.empty() ? 0 : scan.ranges.size() - 1));
+  cdr.Value(scan.angle_min +
+            scan.angle_step * static_cast<float>(scan.ranges.empty() ? 0 : scan.ranges.size() - 1));
   cdr.Value(scan.angle_step);
   cdr.Value(0.0F);
   cdr.Value(scan.period);
@@ -191,8 +195,8 @@ bool ReadPose(std::string_view bytes, Pose& pose) {
   if (!frame) return false;
   const size_t used = 12 + frame->size();
   if (!c.Take(static_cast<uint64_t>((8 - used % 8) % 8))) return false;
-  for (double* x : {&pose.position[0], &pose.position[1], &pose.position[2], &pose.rotation[0], &pose.rotation[1],
-                    &pose.rotation[2], &pose.rotation[3]}) {
+  for (double* x : {&pose.position[0], &pose.position[1], &pose.position[2], &pose.rotation[0],
+                    &pose.rotation[1], &pose.rotation[2], &pose.rotation[3]}) {
     const auto value = c.Take<double>();
     if (!value) return false;
     *x = *value;

@@ -17,8 +17,8 @@ struct Schema {
   std::string_view text;
 };
 
-/// Writes a record of a run as MCAP (mcap.dev, version 0): chunks without compression, an index and statistics
-/// behind them, so that the usual tools can read and seek. The same calls give the same bytes.
+/// Writes a record of a run as MCAP (mcap.dev, version 0): chunks without compression, an index and
+/// statistics behind them, so that the usual tools can read and seek. The same calls give the same bytes.
 ///
 /// The file is written beside its name and gets it in `Finish`; without that, nothing of it stays.
 class Writer {

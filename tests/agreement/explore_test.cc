@@ -37,9 +37,9 @@ class Texts {
     const size_t events = 1 + Pick(3);
     for (size_t e = 0; e < events; ++e) text += Event(e);
     const size_t invariants = 1 + Pick(2);
-    for (size_t i = 0; i < invariants; ++i) text += "invariant i" + std::to_string(i) + ": " + Invariant() + "\n";
-    if (sensor_ && Pick(2) == 0)
-      text += "assume M.calm when M.power > 0 always M.near == old(M.near)\n";
+    for (size_t i = 0; i < invariants; ++i)
+      text += "invariant i" + std::to_string(i) + ": " + Invariant() + "\n";
+    if (sensor_ && Pick(2) == 0) text += "assume M.calm when M.power > 0 always M.near == old(M.near)\n";
     return text;
   }
 
@@ -87,7 +87,8 @@ class Texts {
       case 6:
         return "(" + Bool(depth - 1) + One({" and ", " or "}) + Bool(depth - 1) + ")";
       default:
-        return One({"(forall j in ID: not up[j])", "(exists j in ID: x[j] > 0)", "(forall j in ID: x[j] <= s)"});
+        return One(
+            {"(forall j in ID: not up[j])", "(exists j in ID: x[j] > 0)", "(forall j in ID: x[j] <= s)"});
     }
   }
 
@@ -116,7 +117,8 @@ class Texts {
       case 9:
         return indent + "for k = 0, 2:\n" + Statement(indent + "    ", 0);
       default:
-        return indent + "atomic:\n" + Statement(indent + "    ", depth - 1) + Statement(indent + "    ", depth - 1);
+        return indent + "atomic:\n" + Statement(indent + "    ", depth - 1) +
+               Statement(indent + "    ", depth - 1);
     }
   }
 
@@ -125,7 +127,8 @@ class Texts {
 
   std::string Event(size_t number) {
     std::string text = "E" + std::to_string(number) + ":\n";
-    text += std::string("    pre") + (Pick(5) == 0 ? " urgent" : "") + ": " + (Pick(4) == 0 ? "true" : Bool()) + "\n";
+    text += std::string("    pre") + (Pick(5) == 0 ? " urgent" : "") + ": " +
+            (Pick(4) == 0 ? "true" : Bool()) + "\n";
     text += "    eff:\n";
     const size_t count = 1 + Pick(3);
     for (size_t i = 0; i < count; ++i) text += Statement("        ", 2);
@@ -240,7 +243,8 @@ TEST(ExploreAgreement, WhatIsProvedIsNeverViolated) {
       const auto property = static_cast<size_t>(found.search.broken.property);
       ASSERT_LT(property, report.rows.size());  // the last row is that operations are defined
       EXPECT_NE(report.rows[property].verdict, Verdict::kProved)
-          << "seed " << seed << ", N = " << n << ", " << report.rows[property].name << "\n" << text;
+          << "seed " << seed << ", N = " << n << ", " << report.rows[property].name << "\n"
+          << text;
       break;
     }
     for (const Row& row : report.rows) proved += row.verdict == Verdict::kProved ? 1 : 0;

@@ -24,13 +24,15 @@ def main():
             info = json.loads(subprocess.run([rondo, "explain", "--json", kind["kind"]], capture_output=True, check=True).stdout)
             motion = kind["kind"].startswith(("robot-", "choreo-", "process-"))
             suffix = ".smt2" if info["verb"] in ("solve", "certify") else ".rondo" if motion else ".koord"
-            args = [rondo, info["verb"], "--json"]
+            args = [rondo, *info["verb"].split(), "--json"]
             # An example of several files: each begins with a line `== NAME`.
             for part in re.split("^== ", "== " + kind["kind"] + suffix + "\n" + info["example"], flags=re.MULTILINE)[1:]:
                 name, text = part.split("\n", 1)
                 program = pathlib.Path(folder) / name
                 program.write_text(text)
-                args.append(str(program))
+                # The fleet is found beside the program.
+                if program.suffix != ".toml":
+                    args.append(str(program))
             if info["verb"] == "prove":
                 args += ["--no-cache", "--timeout", "5"]
             if kind["kind"] == "koord-disagreement":

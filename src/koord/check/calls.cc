@@ -18,8 +18,8 @@ struct BuiltinName {
   Builtin builtin;
 };
 constexpr BuiltinName kBuiltins[] = {
-    {"pos", Builtin::kPos},   {"pos3d", Builtin::kPos}, {"mid", Builtin::kMid},  {"midpoint", Builtin::kMid},
-    {"dist", Builtin::kDist}, {"len", Builtin::kLen},   {"abs", Builtin::kAbs},  {"min", Builtin::kMin},
+    {"pos", Builtin::kPos},   {"pos3d", Builtin::kPos}, {"mid", Builtin::kMid},   {"midpoint", Builtin::kMid},
+    {"dist", Builtin::kDist}, {"len", Builtin::kLen},   {"abs", Builtin::kAbs},   {"min", Builtin::kMin},
     {"max", Builtin::kMax},   {"old", Builtin::kOld},   {"rect", Builtin::kRect}, {"grid", Builtin::kGrid}};
 
 }  // namespace
@@ -230,14 +230,16 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
       return Mismatch(e.span, "`rect(a, b)` can only stand behind `in`");
     case Builtin::kGrid: {
       if (!grid_element_.valid()) {
-        diagnostics_.Report(Kind::kKoordSpecScope, e.span, "`grid` has a meaning only behind `in` in `explore`")
+        diagnostics_
+            .Report(Kind::kKoordSpecScope, e.span, "`grid` has a meaning only behind `in` in `explore`")
             .Help("elsewhere, write a list");
         return types.error();
       }
       if (!Arity(e, 3, 3, name)) return types.error();
       const TypeId element = grid_element_;
       if (!types.IsNumeric(element) && types.Resolve(element) != types.pos())
-        return Mismatch(e.span, fmt::format("a grid has numbers or points, not values of type `{}`", types.Name(element)));
+        return Mismatch(e.span, fmt::format("a grid has numbers or points, not values of type `{}`",
+                                            types.Name(element)));
       NeedType(e.args[1], element, "the first point of a grid");
       NeedType(e.args[2], element, "the last point of a grid");
       NeedType(e.args[3], types.Is(element, TypeKind::kInt) ? element : types.real(), "the step of a grid");

@@ -113,7 +113,7 @@ class Checker {
   int loops_ = 0;
   int atomic_ = 0;
   bool old_allowed_ = false;
-  TypeId grid_element_;  // of a `grid(...)`, where one may stand
+  TypeId grid_element_;   // of a `grid(...)`, where one may stand
   bool writing_ = false;  // the target of an assignment may be an actuator
 };
 

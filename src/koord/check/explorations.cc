@@ -72,7 +72,8 @@ void Checker::ExploreVariable(const ExploreEntry& entry, size_t index) {
       model_.type_of[entry.body.index()] = model_.types.List(variable.type);
     } else {
       grid_element_ = variable.type;
-      NeedType(entry.body, model_.types.List(variable.type), fmt::format("the values of `{}`", variable.name));
+      NeedType(entry.body, model_.types.List(variable.type),
+               fmt::format("the values of `{}`", variable.name));
       grid_element_ = TypeId();
     }
     model_.exploration.choices[index] = entry.body;
@@ -91,8 +92,7 @@ void Checker::ExploreFunction(const ExploreEntry& entry) {
   const Function f = model_.functions[index];
   if (!Claim("explore " + f.name, entry.span)) return;
   if (!f.external()) {
-    diagnostics_
-        .Report(Kind::kKoordPointlessSpec, entry.span, fmt::format("`{}` has a body already", f.name))
+    diagnostics_.Report(Kind::kKoordPointlessSpec, entry.span, fmt::format("`{}` has a body already", f.name))
         .At(f.span, "defined here");
     return;
   }

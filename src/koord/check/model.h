@@ -89,10 +89,10 @@ enum class DomainKind : uint8_t { kRobots, kType, kList };
 
 /// The `explore` sections: what makes the program executable in finitely many ways.
 struct Exploration {
-  ExprId robots;                                   ///< N_sys: a number or a list; invalid if not given
-  std::map<size_t, ExprId> values;                 ///< by parameter
-  std::map<size_t, ExprId> choices;                ///< by variable: a list of its values, for each robot
-  std::map<size_t, const ExploreEntry*> functions; ///< by external function; its bindings are in `bound_by`
+  ExprId robots;                                    ///< N_sys: a number or a list; invalid if not given
+  std::map<size_t, ExprId> values;                  ///< by parameter
+  std::map<size_t, ExprId> choices;                 ///< by variable: a list of its values, for each robot
+  std::map<size_t, const ExploreEntry*> functions;  ///< by external function; its bindings are in `bound_by`
 };
 
 /// A program whose names and types are known. Points into the Program, which must outlive it.

@@ -59,8 +59,8 @@ struct WitnessState {
     std::optional<expr::Value> end;
   };
   std::vector<Value> values;
-  std::vector<int64_t> stopped;                        ///< robots that had stopped at the start
-  std::vector<std::pair<int64_t, size_t>> actions;     ///< robot, and its action; 0: it skips
+  std::vector<int64_t> stopped;                     ///< robots that had stopped at the start
+  std::vector<std::pair<int64_t, size_t>> actions;  ///< robot, and its action; 0: it skips
 };
 
 /// An invariant, or (the last row) the definedness of every operation.

@@ -146,8 +146,8 @@ void Reporter::FailedInvariant(size_t i) {
 }
 
 void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
-  const auto index = static_cast<size_t>(
-      std::find(model_.invariants.begin(), model_.invariants.end(), &def) - model_.invariants.begin());
+  const auto index = static_cast<size_t>(std::find(model_.invariants.begin(), model_.invariants.end(), &def) -
+                                         model_.invariants.begin());
   const WitnessReplay replay = ReplayWitness(model_, index, witness.state);
   if (replay.outcome == ReplayOutcome::kDiffers) {
     report_.disagreement = true;
@@ -196,7 +196,8 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
                                                          : "not replayed: " + replay.why);
   if (!witness.reachable)
     report.Note(
-        "this state may be unreachable: the induction could not exclude it; `rondo prove --reach 6` looks for "
+        "this state may be unreachable: the induction could not exclude it; `rondo prove --reach 6` looks "
+        "for "
         "a run to it");
   if (witness.environment) {
     report.Help("say what the controller guarantees: `assume M when ... always ...`");

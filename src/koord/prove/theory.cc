@@ -136,7 +136,8 @@ std::vector<Assertion> Theory::Background() {
   const View parameters = vocabulary_.MakeView("");
   for (const AssumeDef* def : model_.assumptions) {
     if (def->kind != AssumeKind::kFact) continue;
-    result.push_back({executor_.Specification(def->body, parameters, {}, nullptr, {}), AssumptionName(model_, *def)});
+    result.push_back(
+        {executor_.Specification(def->body, parameters, {}, nullptr, {}), AssumptionName(model_, *def)});
   }
   for (const SummaryDef* def : model_.summaries) result.push_back({Summary(*def), SummaryName(*def)});
   for (size_t v = 0; v < model_.variables.size(); ++v) {
@@ -171,7 +172,8 @@ std::vector<Assertion> Theory::DeclaredValues(const View& view) {
 std::vector<Assertion> Theory::Initially(const View& view) {
   std::vector<Assertion> result;
   for (const AssumeDef* def : model_.assumptions) {
-    if (def->kind == AssumeKind::kInitially) result.push_back({PerRobot(def->body, view), AssumptionName(model_, *def)});
+    if (def->kind == AssumeKind::kInitially)
+      result.push_back({PerRobot(def->body, view), AssumptionName(model_, *def)});
   }
   return result;
 }

@@ -337,9 +337,13 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::option
     const std::vector<TermId> wanted = storyteller.Wanted(initial);
     const auto found = Confirm(problem, wanted, Small(arena, wanted), complete, solver, budget, stop);
     if (!found) return std::nullopt;
-    return Witness{action,    found->confirmed && !problems.uses_dist(),
-                   reachable, !initial && storyteller.Moved(found->sat),
-                   n,         storyteller.Tell(found->sat, initial), storyteller.State(found->sat, initial, n)};
+    return Witness{action,
+                   found->confirmed && !problems.uses_dist(),
+                   reachable,
+                   !initial && storyteller.Moved(found->sat),
+                   n,
+                   storyteller.Tell(found->sat, initial),
+                   storyteller.State(found->sat, initial, n)};
   };
   if (initial) return attempt(problems.Initially(invariant), true);
   auto witness = attempt(problems.Step(invariant, *action, false), false);

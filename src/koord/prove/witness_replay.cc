@@ -183,7 +183,8 @@ class Replay {
         machine.SetMemory(settled.data(), settled.data());
         if (promise.when != 0 && !machine.RunFormula(promise.when, r)) continue;
         machine.SetMemory(end_.data(), settled.data());
-        if (!machine.RunFormula(promise.always, r)) return Differs(fmt::format("`{}` is violated", promise.name));
+        if (!machine.RunFormula(promise.always, r))
+          return Differs(fmt::format("`{}` is violated", promise.name));
       }
     }
     return {ReplayOutcome::kReplayed, ""};
@@ -201,7 +202,8 @@ class Replay {
 }  // namespace
 
 WitnessReplay ReplayWitness(const Model& model, size_t invariant, const WitnessState& witness) {
-  if (witness.robots < 1 || witness.robots > 64) return {ReplayOutcome::kNotPossible, "the team is too large"};
+  if (witness.robots < 1 || witness.robots > 64)
+    return {ReplayOutcome::kNotPossible, "the team is too large"};
   return Replay(model, invariant, witness).Run();
 }
 

@@ -8,7 +8,7 @@
 namespace rondo::koord {
 
 enum class ReplayOutcome : uint8_t {
-  kReplayed,  ///< the executable semantics makes the same round, and the invariant fails at its end
+  kReplayed,     ///< the executable semantics makes the same round, and the invariant fails at its end
   kNotPossible,  ///< values or functions that cannot be executed
   kDiffers,      ///< a bug of ours
 };

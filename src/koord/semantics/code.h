@@ -24,29 +24,53 @@ enum class Op : uint8_t {
   kOwnArray,
   kGlobalAt,  // pop an index; push item of b words of the array of c items at a
   kOwnAt,
-  kFrame,         // push b words of the frame at a
-  kSetFrame,      // pop b words into the frame at a
-  kSetGlobal,     // pop b words into shared memory at a: a write of one variable
-  kSetOwn,        // pop b words into the robot's block at a
+  kFrame,      // push b words of the frame at a
+  kSetFrame,   // pop b words into the frame at a
+  kSetGlobal,  // pop b words into shared memory at a: a write of one variable
+  kSetOwn,     // pop b words into the robot's block at a
   kSetParam,
-  kSetGlobalAt,   // pop index and value: item of b words of the array of c items at a
+  kSetGlobalAt,  // pop index and value: item of b words of the array of c items at a
   kSetOwnAt,
   kSetGlobalArray,  // pop a list of c items of b words
   kSetOwnArray,
-  kSlice,     // of the top c words, keep b words from a
-  kReplace,   // pop a record of c words and a value of b words; push the record with the value at a
-  kRobot,     // push the number of the robot
-  kAddInt, kSubInt, kMulInt, kDivInt, kModInt, kNegInt, kAbsInt,
-  kAddFloat, kSubFloat, kMulFloat, kDivFloat, kNegFloat, kAbsFloat,
+  kSlice,    // of the top c words, keep b words from a
+  kReplace,  // pop a record of c words and a value of b words; push the record with the value at a
+  kRobot,    // push the number of the robot
+  kAddInt,
+  kSubInt,
+  kMulInt,
+  kDivInt,
+  kModInt,
+  kNegInt,
+  kAbsInt,
+  kAddFloat,
+  kSubFloat,
+  kMulFloat,
+  kDivFloat,
+  kNegFloat,
+  kAbsFloat,
   kToFloat,  // an int at a words below the top
   kSplat,    // a float becomes a point with three equal coordinates
-  kAddPos, kSubPos, kMulPos, kDivPos, kNegPos, kMidPos, kDistPos, kInRect,
-  kLessInt, kLessEqualInt, kLessFloat, kLessEqualFloat,
+  kAddPos,
+  kSubPos,
+  kMulPos,
+  kDivPos,
+  kNegPos,
+  kMidPos,
+  kDistPos,
+  kInRect,
+  kLessInt,
+  kLessEqualInt,
+  kLessFloat,
+  kLessEqualFloat,
   kEqual,  // pop two values of a words
   kNot,
   kIsRobot,
-  kMinInt, kMaxInt, kMinFloat, kMaxFloat,
-  kListMake,  // a items of b words
+  kMinInt,
+  kMaxInt,
+  kMinFloat,
+  kMaxFloat,
+  kListMake,    // a items of b words
   kListLength,  // a: words of an item
   kListAt,      // pop index and list; push item of a words
   kListSet,     // pop index, list and value
@@ -55,14 +79,16 @@ enum class Op : uint8_t {
   kListContains,  // pop list and value
   kConcatenate,   // pop two texts
   kShow,          // pop a value of log type a; push its text
-  kGridInt, kGridFloat, kGridPos,  // pop low, high, step; push the list of points
-  kJump,         // to a
-  kJumpUnless,   // pop; to a if false
-  kJumpIf,       // pop; to a if true
-  kForNext,      // frame[a] += 1; to c if frame[a] < frame[b]
-  kCall,         // function a
+  kGridInt,
+  kGridFloat,
+  kGridPos,     // pop low, high, step; push the list of points
+  kJump,        // to a
+  kJumpUnless,  // pop; to a if false
+  kJumpIf,      // pop; to a if true
+  kForNext,     // frame[a] += 1; to c if frame[a] < frame[b]
+  kCall,        // function a
   kReturn,
-  kExternal,     // function a; b words of arguments, c of result
+  kExternal,      // function a; b words of arguments, c of result
   kSummaryBegin,  // to a if summaries are not checked, or one is being checked
   kSummaryTest,   // pop; summary a is violated if false
   kSummaryEnd,
@@ -78,15 +104,15 @@ enum class Op : uint8_t {
 /// Why an event cannot be completed.
 enum class Fault : uint8_t {
   kNone,
-  kIndex,      ///< an index out of range
-  kDivision,   ///< by zero
-  kRemove,     ///< an item that is not in the list
-  kReturn,     ///< a function that ends without a value
-  kOverflow,   ///< an int beyond 64 bits, or a float that is not finite
-  kExternal,   ///< an external function that has no value there
-  kTooLong,    ///< a list or grid of more than a million items
-  kNoLock,     ///< no fault: another robot holds the lock of the event, which is a skip then
-  kRunaway,    ///< more than a hundred million instructions
+  kIndex,     ///< an index out of range
+  kDivision,  ///< by zero
+  kRemove,    ///< an item that is not in the list
+  kReturn,    ///< a function that ends without a value
+  kOverflow,  ///< an int beyond 64 bits, or a float that is not finite
+  kExternal,  ///< an external function that has no value there
+  kTooLong,   ///< a list or grid of more than a million items
+  kNoLock,    ///< no fault: another robot holds the lock of the event, which is a skip then
+  kRunaway,   ///< more than a hundred million instructions
 };
 std::string_view Describe(Fault fault);
 

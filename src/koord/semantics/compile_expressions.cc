@@ -188,7 +188,8 @@ void Compiler::Index(const lang::Expr& e) {
   Gen(e.args[1]);
   span_ = e.span;
   const lang::Type& type = model_.types[base];
-  if (type.kind != TypeKind::kList && type.kind != TypeKind::kArray) return Fail(e.span, "nothing tells its type");
+  if (type.kind != TypeKind::kList && type.kind != TypeKind::kArray)
+    return Fail(e.span, "nothing tells its type");
   Emit(Op::kListAt, Width(type.parts[0]));
 }
 

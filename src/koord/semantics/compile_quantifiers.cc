@@ -25,7 +25,8 @@ void Conjuncts(const lang::ExprPool& exprs, ExprId id, std::vector<ExprId>& out)
 bool Compiler::Mentions(ExprId id, const std::vector<uint32_t>& bindings) const {
   const lang::Expr& e = exprs_[id];
   const Ref ref = model_.RefOf(id);
-  if (ref.kind == RefKind::kBinding && std::find(bindings.begin(), bindings.end(), ref.index) != bindings.end())
+  if (ref.kind == RefKind::kBinding &&
+      std::find(bindings.begin(), bindings.end(), ref.index) != bindings.end())
     return true;
   return std::any_of(e.args.begin(), e.args.end(), [&](ExprId a) { return Mentions(a, bindings); });
 }
@@ -81,6 +82,20 @@ void Compiler::Quantifier(ExprId id, const lang::Expr& e) {
   for (size_t b = 0; b < e.binders.size(); ++b) {
     for (const uint32_t binding : domains.bindings[b])
       all.push_back({binding, domains.kinds[b], e.binders[b].domain});
+  }
+  // Ints last: what bounds them may mention the others.
+  std::vector<uint32_t> ints;
+  for (const Bound& b : all) {
+    if (b.kind == DomainKind::kType && model_.types.Is(model_.bindings[b.binding].type, TypeKind::kInt))
+      ints.push_back(b.binding);
+  }
+  const bool lists = std::any_of(all.begin(), all.end(), [&](const Bound& b) {
+    return b.kind == DomainKind::kList && Mentions(b.list, ints);
+  });
+  if (!lists) {
+    std::stable_partition(all.begin(), all.end(), [&](const Bound& b) {
+      return std::find(ints.begin(), ints.end(), b.binding) == ints.end();
+    });
   }
   std::vector<size_t> decided;
   Loop(all, 0, e.args[0], forall, decided);

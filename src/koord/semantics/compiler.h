@@ -90,7 +90,8 @@ class Compiler {
   };
   /// Limits of an int variable that follow from the condition of the quantifier.
   void Limits(uint32_t binding, bool upper, const std::vector<ExprId>& conditions,
-              const std::vector<uint32_t>& unbound, std::vector<uint32_t>& seen, std::vector<Limit>& limits) const;
+              const std::vector<uint32_t>& unbound, std::vector<uint32_t>& seen,
+              std::vector<Limit>& limits) const;
   bool Mentions(ExprId e, const std::vector<uint32_t>& bindings) const;
   void Range(const std::vector<Limit>& limits, Op pick, uint32_t slot);
 

@@ -16,17 +16,20 @@ Environment::Environment(Team& team, diag::Diagnostics& diagnostics) : team_(tea
     if (variable.kind == VariableKind::kParam || !team.layout()[v].exists) continue;
     const bool sensor = variable.kind == VariableKind::kSensor;
     if (sensor) {
-      const bool finite = model.types.Is(variable.type, TypeKind::kBool) || model.types.Is(variable.type, TypeKind::kEnum);
+      const bool finite =
+          model.types.Is(variable.type, TypeKind::kBool) || model.types.Is(variable.type, TypeKind::kEnum);
       if (!finite && !team.choices().contains(v) && !team.given_choices().contains(v)) {
         diagnostics
             .Report(diag::Kind::kKoordNotExecutable, variable.span,
                     fmt::format("nothing says which values `{}` can take", variable.name))
-            .Help(fmt::format("declare them: `explore:` and, in the block below, `{} in [...]`", variable.name));
+            .Help(fmt::format("declare them: `explore:` and, in the block below, `{} in [...]`",
+                              variable.name));
       }
       sensors_.push_back({v, team.layout()[v].at, team.layout()[v].width});
       tuple_ += team.layout()[v].width;
     }
-    if (variable.initial.valid() || (!sensor && !team.choices().contains(v) && !team.given_choices().contains(v)))
+    if (variable.initial.valid() ||
+        (!sensor && !team.choices().contains(v) && !team.given_choices().contains(v)))
       continue;
     for (size_t r = 0; r < (variable.PerRobot() ? team.robots() : 1); ++r) starts_.push_back({v, r});
   }
@@ -97,7 +100,8 @@ bool Environment::Move(std::span<const Word> settled, const Visit& visit) {
       if (k == sensors_.size()) {
         if (!Allowed(r, old_.data())) return;
         for (const Choice& s : sensors_)
-          allowed_[r].insert(allowed_[r].end(), memory_.begin() + block + s.at, memory_.begin() + block + s.at + s.width);
+          allowed_[r].insert(allowed_[r].end(), memory_.begin() + block + s.at,
+                             memory_.begin() + block + s.at + s.width);
         return;
       }
       const Choice& s = sensors_[k];
@@ -122,7 +126,8 @@ bool Environment::Product(size_t robot, const Visit& visit) {
   for (size_t i = 0; i < allowed_[robot].size(); i += tuple_) {
     size_t at = i;
     for (const Choice& s : sensors_) {
-      std::copy_n(allowed_[robot].begin() + static_cast<ptrdiff_t>(at), s.width, memory_.begin() + block + s.at);
+      std::copy_n(allowed_[robot].begin() + static_cast<ptrdiff_t>(at), s.width,
+                  memory_.begin() + block + s.at);
       at += s.width;
     }
     if (!Product(robot + 1, visit)) return false;

@@ -8,7 +8,7 @@ namespace rondo::koord::semantics {
 
 namespace {
 
-constexpr size_t kLongest = 1'000'000;         // items of a list
+constexpr size_t kLongest = 1'000'000;        // items of a list
 constexpr uint64_t kMostSteps = 100'000'000;  // iterations and calls of one run
 
 // How many words an instruction can push.
@@ -118,11 +118,11 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
   };
   const auto array = [&](const Word* from, uint32_t words) { *s++ = heap_.Intern({from, words}); };
 #define RONDO_FAIL(what) return Stop(Fault::what, static_cast<size_t>(i - code))
-#define RONDO_FINITE(x)                        \
-  do {                                         \
-    const double value_ = (x);                 \
+#define RONDO_FINITE(x)                                \
+  do {                                                 \
+    const double value_ = (x);                         \
     if (!std::isfinite(value_)) RONDO_FAIL(kOverflow); \
-    s[-1] = Float(value_);                     \
+    s[-1] = Float(value_);                             \
   } while (false)
   const Instruction* i = code + entry;
   while (true) {
@@ -176,7 +176,8 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         const int64_t k = ToInt(*--s);
         const bool inside = k >= 0 && static_cast<uint64_t>(k) < i->c;
         if (!inside && !total) RONDO_FAIL(kIndex);
-        const Word* from = memory + (i->op == Op::kOwnAt ? own : 0) + i->a + (inside ? static_cast<uint32_t>(k) : 0) * i->b;
+        const Word* from =
+            memory + (i->op == Op::kOwnAt ? own : 0) + i->a + (inside ? static_cast<uint32_t>(k) : 0) * i->b;
         for (uint32_t w = 0; w < i->b; ++w) *s++ = inside ? from[w] : 0;
         break;
       }
@@ -461,7 +462,8 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         s -= i->a;
         const auto items = heap_[s[-1]];
         size_t at = 0;
-        while (at < items.size() && !std::equal(s, s + i->a, items.begin() + static_cast<ptrdiff_t>(at))) at += i->a;
+        while (at < items.size() && !std::equal(s, s + i->a, items.begin() + static_cast<ptrdiff_t>(at)))
+          at += i->a;
         if (i->op == Op::kListContains) {
           s[-1] = at < items.size();
           break;
@@ -471,7 +473,8 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
           break;
         }
         buffer_.assign(items.begin(), items.end());
-        buffer_.erase(buffer_.begin() + static_cast<ptrdiff_t>(at), buffer_.begin() + static_cast<ptrdiff_t>(at + i->a));
+        buffer_.erase(buffer_.begin() + static_cast<ptrdiff_t>(at),
+                      buffer_.begin() + static_cast<ptrdiff_t>(at + i->a));
         s[-1] = heap_.Intern(buffer_);
         break;
       }

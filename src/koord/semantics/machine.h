@@ -66,7 +66,8 @@ class Machine {
   /// Takes the writes of the last run back.
   void Undo();
 
-  /// Check calls against summaries? The first summary that was violated since the last `ForgetSummary`, or -1.
+  /// Check calls against summaries? The first summary that was violated since the last `ForgetSummary`, or
+  /// -1.
   void CheckSummaries(bool check) { check_summaries_ = check; }
   int violated_summary() const { return violated_summary_; }
   void ForgetSummary() { violated_summary_ = -1; }

@@ -81,9 +81,8 @@ void ProgramTransition::Prepare(std::span<const Word> state) {
     std::vector<Effect>& all = effects_[r];
     const auto end = all.begin() + static_cast<ptrdiff_t>(counts_[r]);
     if (any_urgent_ && std::any_of(all.begin(), end, [](const Effect& e) { return e.urgent; })) {
-      counts_[r] = static_cast<size_t>(std::stable_partition(all.begin(), end, [](const Effect& e) {
-                                         return e.urgent;
-                                       }) - all.begin());
+      counts_[r] = static_cast<size_t>(
+          std::stable_partition(all.begin(), end, [](const Effect& e) { return e.urgent; }) - all.begin());
     }
   }
 }
@@ -164,7 +163,8 @@ void ProgramTransition::TakeBack(std::vector<Machine::Write>& undo, size_t from)
   }
 }
 
-// An urgent event must be run before the environment moves, unless another robot holds the lock that it needs.
+// An urgent event must be run before the environment moves, unless another robot holds the lock that it
+// needs.
 bool ProgramTransition::MaySkip(size_t robot) const {
   for (const Effect& e : Of(robot)) {
     if (!e.urgent) continue;

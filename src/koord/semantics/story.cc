@@ -89,8 +89,9 @@ std::string Tell(const Team& team, const std::vector<Step>& run) {
       std::vector<Word> after = before;
       for (const Effect::Write& w : a.writes) after[w.at] = w.value;
       const auto wrote = Changes(team, before, after, false);
-      line(when, fmt::format("robot {}  {}  {}", a.robot, team.events()[static_cast<size_t>(a.event)].def->name,
-                             wrote.empty() ? "" : "wrote " + Join(wrote)));
+      line(when,
+           fmt::format("robot {}  {}  {}", a.robot, team.events()[static_cast<size_t>(a.event)].def->name,
+                       wrote.empty() ? "" : "wrote " + Join(wrote)));
       when.clear();
     }
     if (!acted) line(when, "all skip");
@@ -118,7 +119,8 @@ json StateToJson(const Team& team, std::span<const Word> state) {
     type = model.types[type].parts[0];
     json list = json::array();
     for (uint32_t i = 0; i < place.length; ++i)
-      list.push_back(ToJson(model.types, team.heap(), type, state.subspan(at + i * place.width, place.width)));
+      list.push_back(
+          ToJson(model.types, team.heap(), type, state.subspan(at + i * place.width, place.width)));
     return list;
   };
   for (size_t v = 0; v < model.variables.size(); ++v) {
@@ -166,6 +168,10 @@ std::string Replay(Team& team, const json& run) {
     const json& step = run[i];
     if (!step.is_object() || !step.contains("state") || !step.contains("kind"))
       return fmt::format("step {} is no step", i);
+    const bool known =
+        i == 0 ? step["kind"] == "start"
+               : step["kind"] == "program" || step["kind"] == "environment" || step["kind"] == "prefix";
+    if (!known) return fmt::format("step {} has no kind that could be", i);
     bool found = false;
     bool events_seen = i == 0 || !step.contains("events");
     std::vector<Word> next;
@@ -186,8 +192,8 @@ std::string Replay(Team& team, const json& run) {
         if (step.contains("events")) {
           events_seen = true;
           for (const Action& a : candidate.actions) {
-            const json event = a.event < 0 ? json(nullptr)
-                                           : json(team.events()[static_cast<size_t>(a.event)].def->name);
+            const json event =
+                a.event < 0 ? json(nullptr) : json(team.events()[static_cast<size_t>(a.event)].def->name);
             events_seen = events_seen && a.robot < step["events"].size() && step["events"][a.robot] == event;
           }
         }

@@ -44,7 +44,8 @@ class Judge {
     return std::all_of(body.begin(), body.end(), [&](const Stmt& s) {
       const auto good = [&](ExprId e) { return !e.valid() || Symmetric(e); };
       return good(s.target) && (s.kind == StmtKind::kCall ? Method(s.value) : good(s.value)) &&
-             std::all_of(s.operands.begin(), s.operands.end(), good) && Symmetric(s.body) && Symmetric(s.orelse);
+             std::all_of(s.operands.begin(), s.operands.end(), good) && Symmetric(s.body) &&
+             Symmetric(s.orelse);
     });
   }
 
@@ -52,8 +53,8 @@ class Judge {
   bool Method(ExprId id) const {
     const lang::Expr& call = exprs_[id];
     const lang::Expr& callee = exprs_[call.args[0]];
-    if (callee.kind == ExprKind::kField && !callee.args.empty() && model_.RefOf(id).kind == RefKind::kBuiltin &&
-        !Symmetric(callee.args[0]))
+    if (callee.kind == ExprKind::kField && !callee.args.empty() &&
+        model_.RefOf(id).kind == RefKind::kBuiltin && !Symmetric(callee.args[0]))
       return false;
     return std::all_of(call.args.begin() + 1, call.args.end(), [&](ExprId a) { return Symmetric(a); });
   }
@@ -61,7 +62,8 @@ class Judge {
     const lang::Expr& e = exprs_[id];
     const Ref ref = model_.RefOf(id);
     return e.kind == ExprKind::kPid ||
-           (ref.kind == RefKind::kBinding && std::find(robots_.begin(), robots_.end(), ref.index) != robots_.end());
+           (ref.kind == RefKind::kBinding &&
+            std::find(robots_.begin(), robots_.end(), ref.index) != robots_.end());
   }
 
   const Model& model_;

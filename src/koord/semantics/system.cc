@@ -27,7 +27,9 @@ System::System(Team& team, const SystemOptions& options, diag::Diagnostics& diag
 
 Trouble System::TroubleOf(int property) const {
   const int invariants = static_cast<int>(team_.invariants().size());
-  return property < invariants ? Trouble::kInvariant : property == invariants ? Trouble::kFault : Trouble::kSummary;
+  return property < invariants    ? Trouble::kInvariant
+         : property == invariants ? Trouble::kFault
+                                  : Trouble::kSummary;
 }
 
 int System::Violated(std::span<const Word> state) {
@@ -110,7 +112,9 @@ Broken System::Initial(const explore::Visit& visit) {
       broken = Failure(failed->fault, failed->fault_span, robot, -1);
       return false;
     }
-    const auto settled = [&](std::span<const Word> state, bool complete) { return !complete || begin(state); };
+    const auto settled = [&](std::span<const Word> state, bool complete) {
+      return !complete || begin(state);
+    };
     return options_.reduce ? transition_.Enumerate(settled) : transition_.EnumerateOrders(settled);
   });
   if (broken.property < 0 && environment_.fault() != Fault::kNone)
@@ -230,7 +234,8 @@ Step System::Tell(bool complete) const {
       action.event = static_cast<int>(effect.event);
       action.writes = effect.own;
       for (const Effect::Shared& s : effect.shared) {
-        for (uint32_t w = 0; w < s.unit.width; ++w) action.writes.push_back({s.unit.at + w, effect.words[s.values + w]});
+        for (uint32_t w = 0; w < s.unit.width; ++w)
+          action.writes.push_back({s.unit.at + w, effect.words[s.values + w]});
       }
     }
     step.actions.push_back(std::move(action));

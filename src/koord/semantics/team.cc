@@ -83,7 +83,8 @@ bool Team::Parameters(const TeamOptions& options, diag::Diagnostics& diagnostics
   for (size_t v = 0; v < model_.variables.size() && diagnostics.errors() == before; ++v) {
     const Variable& variable = model_.variables[v];
     if (!model_.types.Is(variable.type, TypeKind::kArray) || variable.kind == VariableKind::kParam) continue;
-    const auto length = variable.length.valid() ? evaluate(variable.length, model_.types.integer()) : std::nullopt;
+    const auto length =
+        variable.length.valid() ? evaluate(variable.length, model_.types.integer()) : std::nullopt;
     if (variable.kind == VariableKind::kAllread || !length || ToInt((*length)[0]) < 1 ||
         ToInt((*length)[0]) > 100'000) {
       diagnostics.Report(Kind::kKoordNotExecutable, variable.span,
@@ -152,7 +153,8 @@ bool Team::Compile(const TeamOptions& options, diag::Diagnostics& diagnostics) {
     const auto has = [&](const std::vector<InitialCode>& list) {
       return std::any_of(list.begin(), list.end(), [&](const InitialCode& i) { return i.variable == v; });
     };
-    if (variable.kind == VariableKind::kParam || variable.kind == VariableKind::kSensor || !(*layout_)[v].exists)
+    if (variable.kind == VariableKind::kParam || variable.kind == VariableKind::kSensor ||
+        !(*layout_)[v].exists)
       continue;
     if (!has(declared_) && !has(derived_) && !choices_.contains(v) && !given_choices_.contains(v))
       zeroed_.push_back(v);
@@ -182,7 +184,8 @@ std::optional<FormulaCode> Team::CompileFormula(Compiler& compiler, std::string 
 
 void Team::Specification(Compiler& compiler) {
   const auto add = [&](std::vector<FormulaCode>& list, std::string name, diag::Span span, ExprId e) {
-    if (auto formula = CompileFormula(compiler, std::move(name), span, e)) list.push_back(std::move(*formula));
+    if (auto formula = CompileFormula(compiler, std::move(name), span, e))
+      list.push_back(std::move(*formula));
   };
   for (size_t i = 0; i < model_.invariants.size(); ++i)
     add(invariants_, InvariantName(model_, i), model_.invariants[i]->span, model_.invariants[i]->body);
@@ -227,7 +230,8 @@ void Team::Derive(Compiler& compiler, ExprId id) {
     const ExprId target = e.args[side];
     const Ref ref = model_.RefOf(target);
     const lang::Expr& t = model_.program->exprs[target];
-    const bool cell = ref.kind == RefKind::kCell && model_.program->exprs[t.args[1]].kind == lang::ExprKind::kPid;
+    const bool cell =
+        ref.kind == RefKind::kCell && model_.program->exprs[t.args[1]].kind == lang::ExprKind::kPid;
     if ((ref.kind != RefKind::kVariable && !cell) || t.kind == lang::ExprKind::kCall) continue;
     const Variable& variable = model_.variables[ref.index];
     const bool known = variable.initial.valid() || model_.exploration.choices.contains(ref.index) ||
@@ -263,7 +267,8 @@ std::string Team::ShowVariable(std::span<const Word> state, size_t v, size_t rob
   std::string text;
   const TypeId item = model_.types[TypeOfVariable(v)].parts[0];
   for (uint32_t i = 0; i < place.length; ++i)
-    text += (i == 0 ? "" : ", ") + Show(model_.types, heap_, item, state.subspan(at + i * place.width, place.width));
+    text += (i == 0 ? "" : ", ") +
+            Show(model_.types, heap_, item, state.subspan(at + i * place.width, place.width));
   return "[" + text + "]";
 }
 

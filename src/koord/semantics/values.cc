@@ -27,7 +27,8 @@ void ForEachPart(const lang::TypeTable& types, const lang::Type& type, std::span
 }
 
 template <typename Visit>
-void ForEachItem(const lang::TypeTable& types, const Heap& heap, TypeId element, Word list, const Visit& visit) {
+void ForEachItem(const lang::TypeTable& types, const Heap& heap, TypeId element, Word list,
+                 const Visit& visit) {
   const auto items = heap[list];
   const uint32_t width = Layout::Width(types, element);
   for (size_t at = 0; at + width <= items.size(); at += width) visit(items.subspan(at, width));
@@ -119,7 +120,8 @@ json ToJson(const lang::TypeTable& types, const Heap& heap, TypeId id, std::span
   return nullptr;
 }
 
-std::optional<std::vector<Word>> FromJson(const lang::TypeTable& types, Heap& heap, TypeId id, const json& j) {
+std::optional<std::vector<Word>> FromJson(const lang::TypeTable& types, Heap& heap, TypeId id,
+                                          const json& j) {
   const lang::Type& type = types[id];
   std::vector<Word> words;
   const auto append = [&](TypeId part, const json& value) {

@@ -15,7 +15,8 @@ std::string Show(const lang::TypeTable& types, const Heap& heap, TypeId type, st
 
 /// Numbers, truth values, texts, names of members, objects by field, lists. What only functions look into is
 /// a list of 64-bit words.
-nlohmann::json ToJson(const lang::TypeTable& types, const Heap& heap, TypeId type, std::span<const Word> words);
+nlohmann::json ToJson(const lang::TypeTable& types, const Heap& heap, TypeId type,
+                      std::span<const Word> words);
 
 /// The reverse; nullopt if the JSON is no value of the type.
 std::optional<std::vector<Word>> FromJson(const lang::TypeTable& types, Heap& heap, TypeId type,

@@ -33,8 +33,8 @@ class Body {
   Body& operator=(const Body&) = delete;
   virtual ~Body() = default;
 
-  /// At rest at `position`, heading `yaw`; it holds its position, and has reached it after its dwell time. Call
-  /// after `Set`.
+  /// At rest at `position`, heading `yaw`; it holds its position, and has reached it after its dwell time.
+  /// Call after `Set`.
   void Place(const Point& position, double yaw);
   /// A new command: go through these points. Empty: stop here.
   void Follow(std::vector<Point> path);

@@ -9,8 +9,8 @@ namespace rondo::sim {
 namespace {
 
 // What every body has.
-std::vector<BodyParameter> With(std::vector<BodyParameter> own, double tolerance, double waypoint, double dwell,
-                                double radius) {
+std::vector<BodyParameter> With(std::vector<BodyParameter> own, double tolerance, double waypoint,
+                                double dwell, double radius) {
   own.push_back({"radius", radius, "m"});
   own.push_back({"tolerance", tolerance, "m"});
   own.push_back({"waypoint_tolerance", waypoint, "m"});
@@ -26,8 +26,9 @@ double Scale(double length, double limit) { return std::min(1.0, limit / std::ma
 // -- point mass
 
 std::vector<BodyParameter> PointMass::Parameters() const {
-  return With({{"max_speed", 2, "m/s"}, {"max_acceleration", 2, "m/s^2"}, {"gain", 1, "1/s"}, {"damping", 4, "1/s"}},
-              0.1, 0.2, 0.5, 0.2);
+  return With(
+      {{"max_speed", 2, "m/s"}, {"max_acceleration", 2, "m/s^2"}, {"gain", 1, "1/s"}, {"damping", 4, "1/s"}},
+      0.1, 0.2, 0.5, 0.2);
 }
 
 void PointMass::Prepare() {
@@ -44,7 +45,8 @@ void PointMass::Control(const Point& target, bool, double) {
   for (size_t i = 0; i < 3; ++i) wanted[i] = gain_ * (target[i] - state_[i]);
   const double slow = Scale(std::hypot(wanted[0], wanted[1], wanted[2]), max_speed_);
   for (size_t i = 0; i < 3; ++i) acceleration_[i] = damping_ * (wanted[i] * slow - state_[i + 3]);
-  const double soft = Scale(std::hypot(acceleration_[0], acceleration_[1], acceleration_[2]), max_acceleration_);
+  const double soft =
+      Scale(std::hypot(acceleration_[0], acceleration_[1], acceleration_[2]), max_acceleration_);
   for (double& a : acceleration_) a *= soft;
 }
 
@@ -58,7 +60,10 @@ void PointMass::Rate(std::span<const double> x, std::span<double> dx) const {
 // -- unicycle
 
 std::vector<BodyParameter> Unicycle::Parameters() const {
-  return With({{"max_speed", 1, "m/s"}, {"max_turn", 2, "rad/s"}, {"speed_gain", 1.5, "1/s"}, {"turn_gain", 3, "1/s"}},
+  return With({{"max_speed", 1, "m/s"},
+               {"max_turn", 2, "rad/s"},
+               {"speed_gain", 1.5, "1/s"},
+               {"turn_gain", 3, "1/s"}},
               0.1, 0.2, 0.2, 0.2);
 }
 

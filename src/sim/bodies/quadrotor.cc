@@ -1,5 +1,5 @@
-// Model and controller: hector_quadrotor, kinetic-devel (mass, inertia, drag, the cascade and its limits). The second
-// set of gains is the one that CyPhyHouse published for its reachability experiments.
+// Model and controller: hector_quadrotor, kinetic-devel (mass, inertia, drag, the cascade and its limits).
+// The second set of gains is the one that CyPhyHouse published for its reachability experiments.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -126,8 +126,8 @@ void Quadrotor::Control(const Point& target, bool, double dt) {
   limited_ = limited_ || thrust_ != lift;
   // Attitude to torque: the direction of the acceleration, seen from the body.
   const Point up{std::sin(pitch), -std::sin(roll), 1};
-  const Point world{std::cos(psi) * up[0] - std::sin(psi) * up[1], std::sin(psi) * up[0] + std::cos(psi) * up[1],
-                    up[2]};
+  const Point world{std::cos(psi) * up[0] - std::sin(psi) * up[1],
+                    std::sin(psi) * up[0] + std::cos(psi) * up[1], up[2]};
   Point body{};
   for (size_t i = 0; i < 3; ++i) {
     for (size_t k = 0; k < 3; ++k) body[i] += r[k][i] * world[k];
@@ -150,7 +150,8 @@ void Quadrotor::Rate(std::span<const double> x, std::span<double> dx) const {
   }
   for (size_t i = 0; i < 3; ++i) {
     dx[i] = v[i];
-    dx[i + 3] = (r[i][0] * force[0] + r[i][1] * force[1] + r[i][2] * force[2]) / mass_ - (i == 2 ? kGravity : 0);
+    dx[i + 3] =
+        (r[i][0] * force[0] + r[i][1] * force[1] + r[i][2] * force[2]) / mass_ - (i == 2 ? kGravity : 0);
   }
   dx[6] = -0.5 * (x[7] * w[0] + x[8] * w[1] + x[9] * w[2]);
   dx[7] = 0.5 * (x[6] * w[0] + x[8] * w[2] - x[9] * w[1]);

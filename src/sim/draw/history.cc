@@ -26,8 +26,8 @@ base::Result<History> ReadHistory(std::string_view bytes) {
       history.run = json::parse(m.bytes, nullptr, false);
       const json& list = history.run.contains("robots") ? history.run["robots"] : json::array();
       for (const json& robot : list.is_array() ? list : json::array()) {
-        if (!robot.is_object() || !robot.contains("name") || !robot["name"].is_string() || !robot.contains("radius") ||
-            !robot["radius"].is_number()) {
+        if (!robot.is_object() || !robot.contains("name") || !robot["name"].is_string() ||
+            !robot.contains("radius") || !robot["radius"].is_number()) {
           problem = "the record of the run is damaged";
           return false;
         }
@@ -51,8 +51,9 @@ base::Result<History> ReadHistory(std::string_view bytes) {
         problem = "a map is damaged";
         return false;
       }
-      history.known.emplace_back(time, static_cast<size_t>(std::count_if(history.map.cells.begin(), history.map.cells.end(),
-                                                                         [](int8_t c) { return c >= 0; })));
+      history.known.emplace_back(
+          time, static_cast<size_t>(std::count_if(history.map.cells.begin(), history.map.cells.end(),
+                                                  [](int8_t c) { return c >= 0; })));
     }
     return true;
   });

@@ -24,7 +24,7 @@ struct History {
     nlohmann::json event;
   };
   std::vector<Event> events;
-  trace::Grid map;  ///< the last one; no cells if there is none
+  trace::Grid map;                               ///< the last one; no cells if there is none
   std::vector<std::pair<double, size_t>> known;  ///< known cells of the map over time
 };
 

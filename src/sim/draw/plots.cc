@@ -34,16 +34,18 @@ class Canvas {
   Canvas(double x0, double y0, double x1, double y1, double width, double height)
       : x0_(x0), y1_(y1), sx_((width - 2 * kMargin) / (x1 - x0)), sy_((height - 2 * kMargin) / (y1 - y0)) {
     out_ = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" height=\"{:.0f}\" viewBox=\"0 0 {:.0f} {:.0f}\" "
-        "font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" height=\"{:.0f}\" viewBox=\"0 0 {:.0f} "
+        "{:.0f}\" "
+        "font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" "
+        "fill=\"white\"/>\n",
         width, height, width, height);
   }
   double X(double x) const { return kMargin + (x - x0_) * sx_; }
   double Y(double y) const { return kMargin + (y1_ - y) * sy_; }
   double Scale() const { return sx_; }
   void Rect(double x, double y, double w, double h, const std::string& style) {
-    out_ += fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" {}/>\n", X(x), Y(y + h), w * sx_,
-                        h * sy_, style);
+    out_ += fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" {}/>\n", X(x),
+                        Y(y + h), w * sx_, h * sy_, style);
   }
   void Circle(double x, double y, double pixels, const std::string& style) {
     out_ += fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.2f}\" {}/>\n", X(x), Y(y), pixels, style);
@@ -71,11 +73,12 @@ class Canvas {
     out_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", px, py, style, Escaped(text));
   }
   void Bar(double pixels, const std::string& text) {
-    out_ += fmt::format("<path d=\"M{:.1f} 28 h{:.1f}\" stroke=\"black\" stroke-width=\"2\"/>\n", kMargin, pixels);
+    out_ += fmt::format("<path d=\"M{:.1f} 28 h{:.1f}\" stroke=\"black\" stroke-width=\"2\"/>\n", kMargin,
+                        pixels);
     Raw(kMargin, 20, text);
   }
   std::string Take() { return out_ + "</svg>\n"; }
-  static constexpr double kMargin = 40;
+  static constexpr double kMargin = 56;
 
  private:
   double x0_, y1_, sx_, sy_;
@@ -139,11 +142,14 @@ void Routes(Canvas& canvas, const History& history, bool thin) {
     const auto& robot = history.robots[r];
     std::vector<std::pair<double, double>> line;
     for (const auto& [t, p] : robot.poses) line.emplace_back(p[0], p[1]);
-    canvas.Line(line, fmt::format("stroke=\"{}\" stroke-width=\"{}\" opacity=\"0.8\"", Colour(r), thin ? 1 : 1.5));
+    canvas.Line(line,
+                fmt::format("stroke=\"{}\" stroke-width=\"{}\" opacity=\"0.8\"", Colour(r), thin ? 1 : 1.5));
     if (line.empty()) continue;
     const double size = std::max(3.0, robot.radius * canvas.Scale());
-    canvas.Circle(line.front().first, line.front().second, size, fmt::format("fill=\"none\" stroke=\"{}\"", Colour(r)));
-    canvas.Circle(line.back().first, line.back().second, size, fmt::format("fill=\"{}\" fill-opacity=\"0.5\"", Colour(r)));
+    canvas.Circle(line.front().first, line.front().second, size,
+                  fmt::format("fill=\"none\" stroke=\"{}\"", Colour(r)));
+    canvas.Circle(line.back().first, line.back().second, size,
+                  fmt::format("fill=\"{}\" fill-opacity=\"0.5\"", Colour(r)));
     if (history.robots.size() <= 40)
       canvas.Text(line.back().first + robot.radius, line.back().second + robot.radius, robot.name,
                   fmt::format("fill=\"{}\"", Colour(r)));
@@ -169,8 +175,8 @@ void Touches(Canvas& canvas, const History& history) {
 }
 
 std::string Title(const History& history) {
-  return fmt::format("{}, {} robots, seed {}", history.run.value("program_name", "program"), history.robots.size(),
-                     history.run.contains("seed") ? history.run["seed"].dump() : "?");
+  return fmt::format("{}, {} robots, seed {}", history.run.value("program_name", "program"),
+                     history.robots.size(), history.run.contains("seed") ? history.run["seed"].dump() : "?");
 }
 
 }  // namespace
@@ -192,15 +198,18 @@ std::string DrawMap(const History& history, const World& world) {
   for (uint32_t r = 0; r < map.height; ++r) {
     for (uint32_t c = 0; c < map.width; ++c) {
       const int8_t cell = map.cells[static_cast<size_t>(r) * map.width + c];
-      canvas.Rect(map.origin[0] + c * size, map.origin[1] + r * size, size, size,
-                  fmt::format("fill=\"{}\" stroke=\"#dddddd\" stroke-width=\"0.5\"",
-                              cell < 0 ? "#f3e3b5" : cell == 0 ? "white" : "#555555"));
+      canvas.Rect(
+          map.origin[0] + c * size, map.origin[1] + r * size, size, size,
+          fmt::format("fill=\"{}\" stroke=\"#dddddd\" stroke-width=\"0.5\"", cell < 0    ? "#f3e3b5"
+                                                                             : cell == 0 ? "white"
+                                                                                         : "#555555"));
     }
   }
   Obstacles(canvas, world, "fill=\"none\" stroke=\"#d62728\"");
   Routes(canvas, history, true);
   ScaleBar(canvas);
-  canvas.Raw(Canvas::kMargin + 80, 20, Title(history) + "; dark: occupied, white: empty, yellow: unknown; red: obstacles");
+  canvas.Raw(Canvas::kMargin + 80, 20,
+             Title(history) + "; dark: occupied, white: empty, yellow: unknown; red: obstacles");
   return canvas.Take();
 }
 
@@ -220,8 +229,8 @@ std::string DrawDistances(const History& history, const World& world) {
       const Point& p = history.robots[a].poses[i].second;
       near = std::min(near, world.DistanceTo(p) - history.robots[a].radius);
       for (size_t b = 0; b < a; ++b) {
-        between = std::min(between, Distance(p, history.robots[b].poses[i].second) - history.robots[a].radius -
-                                        history.robots[b].radius);
+        between = std::min(between, Distance(p, history.robots[b].poses[i].second) -
+                                        history.robots[a].radius - history.robots[b].radius);
       }
     }
     end = std::max(end, t);

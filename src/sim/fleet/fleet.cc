@@ -1,7 +1,6 @@
 #include "sim/fleet/fleet.h"
 
 #include <fmt/format.h>
-
 #include <toml++/toml.h>
 
 #include <cmath>
@@ -62,7 +61,8 @@ class Reader {
       while (begin < text.size() && (static_cast<unsigned char>(text[begin]) & 0xC0U) == 0x80U) ++begin;
     }
     uint32_t end = begin;
-    while (end < text.size() && text[end] != '\n' && text[end] != '#' && text[end] != ',' && end < begin + 60) ++end;
+    while (end < text.size() && text[end] != '\n' && text[end] != '#' && text[end] != ',' && end < begin + 60)
+      ++end;
     while (end > begin + 1 && std::isspace(static_cast<unsigned char>(text[end - 1]))) --end;
     return {file_, begin, std::max(end, begin + 1)};
   }
@@ -87,7 +87,8 @@ class Reader {
   const toml::table* Table(const toml::table& parent, const char* name) {
     const toml::node* node = parent.get(name);
     if (node == nullptr) return nullptr;
-    if (node->as_table() == nullptr) Wrong(At(*node), fmt::format("`{}` must be a table: `[{}]`", name, name));
+    if (node->as_table() == nullptr)
+      Wrong(At(*node), fmt::format("`{}` must be a table: `[{}]`", name, name));
     return node->as_table();
   }
 
@@ -110,9 +111,11 @@ class Reader {
     const toml::node* node = table.get(name);
     if (node == nullptr) return usual;
     const auto value = node->value<std::string>();
-    const bool known = value && std::any_of(choices.begin(), choices.end(), [&](const char* c) { return *value == c; });
+    const bool known =
+        value && std::any_of(choices.begin(), choices.end(), [&](const char* c) { return *value == c; });
     if (known) return *value;
-    auto& report = diagnostics_.Report(Kind::kFleetValue, At(*node), fmt::format("`{}` cannot be this", name));
+    auto& report =
+        diagnostics_.Report(Kind::kFleetValue, At(*node), fmt::format("`{}` cannot be this", name));
     report.Help(fmt::format("it can be {}", fmt::join(choices, ", ")));
     return usual;
   }
@@ -141,7 +144,9 @@ class Reader {
   }
 
   void Run(const toml::table& t) {
-    Known(t, {"delta", "duration", "step", "monitor", "pose_rate", "skip", "integrator", "policy", "seed", "until"},
+    Known(t,
+          {"delta", "duration", "step", "monitor", "pose_rate", "skip", "integrator", "policy", "seed",
+           "until"},
           "`run`");
     fleet_.delta = Number(t, "delta", fleet_.delta, 1e-4, 1e4);
     fleet_.duration = Number(t, "duration", fleet_.duration, 1e-4, 1e7);
@@ -150,7 +155,8 @@ class Reader {
     fleet_.pose_rate = Number(t, "pose_rate", fleet_.pose_rate, 0.001, 1000);
     fleet_.skip = Number(t, "skip", fleet_.skip, 0, 1);
     fleet_.until = Word(t, "until", "", {"mapped", "stopped"});
-    if (Word(t, "integrator", "rk4", {"rk4", "adaptive"}) == "adaptive") fleet_.integrator = Integrator::kAdaptive;
+    if (Word(t, "integrator", "rk4", {"rk4", "adaptive"}) == "adaptive")
+      fleet_.integrator = Integrator::kAdaptive;
     const std::string policy = Word(t, "policy", "first", {"first", "random", "round_robin"});
     fleet_.policy = policy == "random"        ? Policy::kRandom
                     : policy == "round_robin" ? Policy::kRoundRobin
@@ -176,7 +182,8 @@ class Reader {
     });
     ForEach(t, "cylinder", [&](const toml::table& c) {
       Known(c, {"centre", "radius", "height"}, "a cylinder");
-      fleet_.world.cylinders.push_back({ReadPoint(c, "centre", {}, true, At(c)), Number(c, "radius", 0.5, 1e-3, 1e4),
+      fleet_.world.cylinders.push_back({ReadPoint(c, "centre", {}, true, At(c)),
+                                        Number(c, "radius", 0.5, 1e-3, 1e4),
                                         Number(c, "height", 2, 1e-3, 1e4)});
     });
   }
@@ -228,16 +235,18 @@ class Reader {
   void Robots(const toml::table& root) {
     std::set<std::string> names;
     ForEach(root, "robot", [&](const toml::table& t) {
-      Known(t, {"name", "model", "position", "yaw", "parameters", "count", "columns", "step", "row_step"}, "a robot");
+      Known(t, {"name", "model", "position", "yaw", "parameters", "count", "columns", "step", "row_step"},
+            "a robot");
       FleetRobot robot;
       robot.span = At(t);
       const toml::node* model = t.get("model");
       robot.model = model == nullptr ? "" : model->value<std::string>().value_or("");
       const std::vector<std::string> models = BodyModels();
       if (MakeBody(robot.model) == nullptr) {
-        auto& report = diagnostics_.Report(Kind::kFleetValue, model == nullptr ? robot.span : At(*model),
-                                           model == nullptr ? std::string("the robot has no `model`")
-                                                            : fmt::format("there is no model `{}`", robot.model));
+        auto& report =
+            diagnostics_.Report(Kind::kFleetValue, model == nullptr ? robot.span : At(*model),
+                                model == nullptr ? std::string("the robot has no `model`")
+                                                 : fmt::format("there is no model `{}`", robot.model));
         const std::string near = lang::Suggest(robot.model, models);
         report.Help(near.empty() ? fmt::format("there are {}", fmt::join(models, ", "))
                                  : fmt::format("did you mean `{}`?", near));
@@ -249,7 +258,8 @@ class Reader {
         const auto known = MakeBody(robot.model)->Parameters();
         for (const auto& [key, node] : *parameters) {
           const std::string name(key.str());
-          const bool exists = std::any_of(known.begin(), known.end(), [&](const auto& p) { return p.name == name; });
+          const bool exists =
+              std::any_of(known.begin(), known.end(), [&](const auto& p) { return p.name == name; });
           if (!exists) {
             std::vector<std::string> all;
             for (const BodyParameter& p : known) all.emplace_back(p.name);
@@ -264,10 +274,11 @@ class Reader {
         }
       }
       const toml::node* name = t.get("name");
-      robot.name = name == nullptr ? fmt::format("robot{}", fleet_.robots.size()) : name->value<std::string>().value_or("");
-      const bool good = !robot.name.empty() && std::all_of(robot.name.begin(), robot.name.end(), [](unsigned char c) {
-        return std::isalnum(c) || c == '_';
-      });
+      robot.name = name == nullptr ? fmt::format("robot{}", fleet_.robots.size())
+                                   : name->value<std::string>().value_or("");
+      const bool good =
+          !robot.name.empty() && std::all_of(robot.name.begin(), robot.name.end(),
+                                             [](unsigned char c) { return std::isalnum(c) || c == '_'; });
       if (!good) Wrong(name == nullptr ? robot.span : At(*name), "a name has letters, digits and `_`");
       const auto count = static_cast<size_t>(Number(t, "count", 1, 1, 100'000));
       const auto columns = static_cast<size_t>(Number(t, "columns", static_cast<double>(count), 1, 100'000));
@@ -278,7 +289,8 @@ class Reader {
         robot = first;
         if (t.contains("count")) robot.name = fmt::format("{}{}", first.name, i);
         for (size_t k = 0; k < 3; ++k) {
-          robot.position[k] += static_cast<double>(i % columns) * step[k] + static_cast<double>(i / columns) * row_step[k];
+          robot.position[k] +=
+              static_cast<double>(i % columns) * step[k] + static_cast<double>(i / columns) * row_step[k];
         }
         if (!names.insert(robot.name).second)
           Wrong(robot.span, fmt::format("there are two robots `{}`", robot.name));
@@ -286,7 +298,8 @@ class Reader {
       }
     });
     if (fleet_.robots.empty() && !diagnostics_.has_errors())
-      diagnostics_.Report(Kind::kFleetValue, {file_, 0, 1}, "the fleet has no robot").Help("add one: `[[robot]]`");
+      diagnostics_.Report(Kind::kFleetValue, {file_, 0, 1}, "the fleet has no robot")
+          .Help("add one: `[[robot]]`");
   }
 
   const diag::SourceSet& sources_;

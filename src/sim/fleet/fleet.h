@@ -28,11 +28,11 @@ struct FleetRobot {
 };
 
 struct Lidar {
-  double range = 10;       ///< m
-  int beams = 360;         ///< over the full turn
-  double rate = 10;        ///< Hz
-  double noise = 0;        ///< standard deviation, m
-  double resolution = 0;   ///< m; 0: none
+  double range = 10;      ///< m
+  int beams = 360;        ///< over the full turn
+  double rate = 10;       ///< Hz
+  double noise = 0;       ///< standard deviation, m
+  double resolution = 0;  ///< m; 0: none
 };
 
 /// A value of the program that the fleet file gives.
@@ -41,21 +41,22 @@ struct FleetValue {
   diag::Span span;
 };
 
-/// The robots, their world, and how a simulation runs. Lengths in metres, times in seconds, angles in radians.
+/// The robots, their world, and how a simulation runs. Lengths in metres, times in seconds, angles in
+/// radians.
 struct Fleet {
-  double delta = 0.1;      ///< length of a round
+  double delta = 0.1;  ///< length of a round
   double duration = 60;
-  double step = 0.01;      ///< period of the controllers, and of RK4
-  double monitor = 0.05;   ///< time between checks of assumptions, invariants and collisions
-  double pose_rate = 10;   ///< Hz, in the trace
-  double skip = 0;         ///< probability that a robot skips a round
+  double step = 0.01;     ///< period of the controllers, and of RK4
+  double monitor = 0.05;  ///< time between checks of assumptions, invariants and collisions
+  double pose_rate = 10;  ///< Hz, in the trace
+  double skip = 0;        ///< probability that a robot skips a round
   Integrator integrator = Integrator::kRungeKutta4;
   Policy policy = Policy::kFirst;
   std::optional<uint64_t> seed;
-  std::string until;       ///< `mapped`, `stopped` or nothing
+  std::string until;  ///< `mapped`, `stopped` or nothing
   World world;
   Lidar lidar;
-  double clearance = 0.3;  ///< planned paths keep so far from obstacles, beside the robot's radius
+  double clearance = 0.3;     ///< planned paths keep so far from obstacles, beside the robot's radius
   double path_clearance = 1;  ///< `pathIsClear`
   double cell = 1;            ///< of maps
   double map_range = 0;       ///< how far scans are drawn into maps; 0: the scanner's range

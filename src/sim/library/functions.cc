@@ -91,9 +91,7 @@ Functions::Known Functions::Recognise(const koord::Function& f) const {
     return true;
   };
   const auto point = [&](lang::TypeId t) { return types.Resolve(t) == types.pos(); };
-  const auto path = [&](lang::TypeId t) {
-    return types.Is(t, TypeKind::kList) && point(types[t].parts[0]);
-  };
+  const auto path = [&](lang::TypeId t) { return types.Is(t, TypeKind::kList) && point(types[t].parts[0]); };
   if (f.port >= 0) {
     if (!path(f.result) || f.parameters.empty() || !point(f.parameters[0])) return Known::kNone;
     if (f.parameters.size() == 1) return Known::kPlanner;
@@ -102,21 +100,24 @@ Functions::Known Functions::Recognise(const koord::Function& f) const {
     return cells ? Known::kPlannerWithObstacles : Known::kNone;
   }
   using enum TypeKind;
-  if (f.name == "pathIsClear" && f.parameters.size() == 3 && types.Is(f.result, kBool) && path(f.parameters[1]) &&
-      types.Is(f.parameters[2], kInt))
+  if (f.name == "pathIsClear" && f.parameters.size() == 3 && types.Is(f.result, kBool) &&
+      path(f.parameters[1]) && types.Is(f.parameters[2], kInt))
     return Known::kPathIsClear;
   if (f.name == "apart" && is(kFloat, {kList, kList}) && path(f.parameters[0]) && path(f.parameters[1]))
     return Known::kApart;
   if (f.name == "away" && is(kFloat, {kRecord, kList}) && point(f.parameters[0]) && path(f.parameters[1]))
     return Known::kAway;
   if (f.name == "merge" && is(kOpaque, {kOpaque, kOpaque})) return Known::kMerge;
-  if (f.name == "scanToMap" && is(kOpaque, {kRecord, kOpaque}) && point(f.parameters[0])) return Known::kScanToMap;
-  if (f.name == "pickFrontierPos" && is(kRecord, {kOpaque, kRecord}) && point(f.result) && point(f.parameters[1]))
+  if (f.name == "scanToMap" && is(kOpaque, {kRecord, kOpaque}) && point(f.parameters[0]))
+    return Known::kScanToMap;
+  if (f.name == "pickFrontierPos" && is(kRecord, {kOpaque, kRecord}) && point(f.result) &&
+      point(f.parameters[1]))
     return Known::kPickFrontier;
   if (f.name == "findObs" && is(kList, {kOpaque}) && types.Is(types[f.result].parts[0], kOpaque))
     return Known::kFindObs;
   if (f.name == "right" && is(kBool, {kOpaque})) return Known::kRight;
-  if (f.name == "true_scan" && is(kBool, {kRecord, kOpaque}) && point(f.parameters[0])) return Known::kTrueScan;
+  if (f.name == "true_scan" && is(kBool, {kRecord, kOpaque}) && point(f.parameters[0]))
+    return Known::kTrueScan;
   return Known::kNone;
 }
 
@@ -239,8 +240,9 @@ bool Functions::Call(size_t f, size_t robot, std::span<const Word> a, std::span<
       for (size_t i = 0; i < rays.distances.size(); ++i) {
         if (!std::isfinite(rays.distances[i])) continue;
         const double angle = rays.first + static_cast<double>(i) * rays.step;
-        good = good && fleet_.world.DistanceTo({from[0] + rays.distances[i] * std::cos(angle),
-                                                from[1] + rays.distances[i] * std::sin(angle), from[2]}) <= margin;
+        good = good &&
+               fleet_.world.DistanceTo({from[0] + rays.distances[i] * std::cos(angle),
+                                        from[1] + rays.distances[i] * std::sin(angle), from[2]}) <= margin;
       }
       result[0] = good;
       return true;

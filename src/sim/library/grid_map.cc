@@ -10,14 +10,17 @@ namespace rondo::sim {
 
 int GridMap::Column(double x) const { return static_cast<int>(std::floor((x - x0) / cell)); }
 int GridMap::Row(double y) const { return static_cast<int>(std::floor((y - y0) / cell)); }
-Point GridMap::Centre(int column, int row) const { return {x0 + (column + 0.5) * cell, y0 + (row + 0.5) * cell, 0}; }
+Point GridMap::Centre(int column, int row) const {
+  return {x0 + (column + 0.5) * cell, y0 + (row + 0.5) * cell, 0};
+}
 
 GridMap EmptyMap(const World& world, double cell) {
   GridMap map;
   map.cell = cell;
   map.x0 = world.low[0];
   map.y0 = world.low[1];
-  map.columns = std::clamp(static_cast<int>(std::ceil((world.high[0] - world.low[0]) / cell - 1e-9)), 1, 2000);
+  map.columns =
+      std::clamp(static_cast<int>(std::ceil((world.high[0] - world.low[0]) / cell - 1e-9)), 1, 2000);
   map.rows = std::clamp(static_cast<int>(std::ceil((world.high[1] - world.low[1]) / cell - 1e-9)), 1, 2000);
   map.cells.assign(static_cast<size_t>(map.columns) * static_cast<size_t>(map.rows), GridMap::kUnknown);
   for (int c = 0; c < map.columns; ++c) map.At(c, 0) = map.At(c, map.rows - 1) = GridMap::kOccupied;
@@ -68,7 +71,8 @@ void Draw(GridMap& map, const Point& from, const Rays& rays, double range) {
         const double x = centre[0] - from[0];
         const double y = centre[1] - from[1];
         const double far = std::hypot(x, y) + map.cell * std::numbers::sqrt2 / 2;
-        const double half = std::atan2(map.cell * std::numbers::sqrt2 / 2, std::max(std::hypot(x, y), map.cell / 2));
+        const double half =
+            std::atan2(map.cell * std::numbers::sqrt2 / 2, std::max(std::hypot(x, y), map.cell / 2));
         const double middle = std::atan2(y, x);
         for (double a = middle - half; a <= middle + half && seen; a += rays.step) {
           const double f = free(a);

@@ -20,8 +20,12 @@ struct GridMap {
   int Column(double x) const;
   int Row(double y) const;
   bool Inside(int column, int row) const { return column >= 0 && row >= 0 && column < columns && row < rows; }
-  int8_t& At(int column, int row) { return cells[static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column)]; }
-  int8_t At(int column, int row) const { return cells[static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column)]; }
+  int8_t& At(int column, int row) {
+    return cells[static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column)];
+  }
+  int8_t At(int column, int row) const {
+    return cells[static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column)];
+  }
   Point Centre(int column, int row) const;
 };
 
@@ -31,19 +35,20 @@ GridMap EmptyMap(const World& world, double cell);
 /// Cell by cell the larger of both: occupied before empty before unknown.
 GridMap Merge(const GridMap& a, const GridMap& b);
 
-/// Distances in the directions `first + i * step` (world frame), seen from a point; infinite: free up to `range`.
+/// Distances in the directions `first + i * step` (world frame), seen from a point; infinite: free up to
+/// `range`.
 struct Rays {
   double first = 0;
   double step = 0;
   double range = 0;
   std::vector<double> distances;
 };
-/// Cells whose four corners are nearer than what the rays see in their direction are empty; the cells in which
-/// rays end are occupied. Rays count up to `range`.
+/// Cells whose four corners are nearer than what the rays see in their direction are empty; the cells in
+/// which rays end are occupied. Rays count up to `range`.
 void Draw(GridMap& map, const Point& from, const Rays& rays, double range);
 
-/// The cell to go to next: empty, reachable through empty cells, with an unknown neighbour, the nearest first.
-/// False if there is none.
+/// The cell to go to next: empty, reachable through empty cells, with an unknown neighbour, the nearest
+/// first. False if there is none.
 bool Frontier(const GridMap& map, const Point& from, Point& target);
 
 /// Does a cell contain a part of an obstacle, or lie on the edge?

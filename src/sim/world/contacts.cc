@@ -33,8 +33,10 @@ Contacts::Contacts(const World& world, const std::vector<double>& radii) : impl_
     impl_->still.registerObject(object.get());
     impl_->obstacles.push_back(std::move(object));
   };
-  for (const Box& b : world.boxes) add(std::make_shared<fcl::Boxd>(b.size[0], b.size[1], b.size[2]), b.centre);
-  for (const Cylinder& c : world.cylinders) add(std::make_shared<fcl::Cylinderd>(c.radius, c.height), c.centre);
+  for (const Box& b : world.boxes)
+    add(std::make_shared<fcl::Boxd>(b.size[0], b.size[1], b.size[2]), b.centre);
+  for (const Cylinder& c : world.cylinders)
+    add(std::make_shared<fcl::Cylinderd>(c.radius, c.height), c.centre);
   impl_->still.setup();
   impl_->radii = radii;
   for (size_t r = 0; r < radii.size(); ++r) {

@@ -45,7 +45,9 @@ double CastCylinder(const Cylinder& c, const Point& from, double dx, double dy) 
 
 Point Sub(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 double Dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Point At(const Point& p, const Point& d, double t) { return {p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]}; }
+Point At(const Point& p, const Point& d, double t) {
+  return {p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]};
+}
 
 // Of the segments [a, b] and [c, d]: minimise a convex quadratic over the unit square.
 double SegmentDistance(const Point& a, const Point& b, const Point& c, const Point& d) {
