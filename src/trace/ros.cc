@@ -14,10 +14,10 @@ namespace rondo::trace {
 #define RONDO_VECTOR RONDO_SEPARATOR "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n"
 #define RONDO_QUATERNION \
   RONDO_SEPARATOR "MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"
-#define RONDO_POSE                                                                       \
-  RONDO_SEPARATOR                                                                        \
-      "MSG: geometry_msgs/Pose\ngeometry_msgs/Point position\ngeometry_msgs/Quaternion " \
-      "orientation\n" RONDO_POINT RONDO_QUATERNION
+#define RONDO_POSE                                                                   \
+  RONDO_SEPARATOR                                                                    \
+  "MSG: geometry_msgs/Pose\ngeometry_msgs/Point position\ngeometry_msgs/Quaternion " \
+  "orientation\n" RONDO_POINT RONDO_QUATERNION
 
 const Schema kPoseStamped{
     "geometry_msgs/msg/PoseStamped", "ros2msg",

@@ -22,8 +22,9 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(argv[i])) {
       const auto extension = entry.path().extension();
-      if (!entry.is_regular_file() || (extension != ".koord" && extension != ".spec" &&
-                                       extension != ".smt2" && extension != ".rondo" && extension != ".bin"))
+      if (!entry.is_regular_file() ||
+          (extension != ".koord" && extension != ".spec" && extension != ".smt2" && extension != ".rondo" &&
+           extension != ".toml" && extension != ".bin"))
         continue;
       std::ifstream in(entry.path(), std::ios::binary);
       const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

@@ -274,8 +274,9 @@ class Reader {
         }
       }
       const toml::node* name = t.get("name");
-      robot.name = name == nullptr ? fmt::format("robot{}", fleet_.robots.size())
-                                   : name->value<std::string>().value_or("");
+      robot.name = name != nullptr       ? name->value<std::string>().value_or("")
+                   : t.contains("count") ? std::string("robot")
+                                         : fmt::format("robot{}", fleet_.robots.size());
       const bool good =
           !robot.name.empty() && std::all_of(robot.name.begin(), robot.name.end(),
                                              [](unsigned char c) { return std::isalnum(c) || c == '_'; });
