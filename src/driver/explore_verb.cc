@@ -10,6 +10,7 @@
 #include "driver/interrupt.h"
 #include "driver/koord_load.h"
 #include "driver/run_file.h"
+#include "driver/run_trace.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 
@@ -32,6 +33,7 @@ struct Options {
   uint64_t steps = 1000;
   uint64_t seed = 1;
   std::string save;
+  std::string trace;
   bool json = false;
 };
 
@@ -170,8 +172,12 @@ int Run(const Options& options) {
   for (const Explored& e : all) {
     if (!e.run.is_array() || e.run.empty()) continue;
     const std::string path = options.save.empty() ? DefaultRunFile(options.file, e.property) : options.save;
-    const auto written = SaveRun(path, {options.file, options.spec, e.robots, e.property, "explore", e.run});
+    const RunFile run{options.file, options.spec, e.robots, e.property, "explore", e.run};
+    const auto written = SaveRun(path, run);
     (written.ok() ? saved : trouble) = written.ok() ? path : written.error().message;
+    if (options.trace.empty()) continue;
+    const auto traced = WriteRunTrace(options.trace, run, session);
+    if (!traced.ok()) trouble = traced.error().message;
   }
   if (options.json) {
     nlohmann::json sizes_json = nlohmann::json::array();
@@ -234,6 +240,7 @@ void AddExploreVerb(CLI::App& app, int& status) {
   verb->add_option("--steps", options->steps, "length of a random walk; default: 1000");
   verb->add_option("--seed", options->seed, "of the random walks; default: 1");
   verb->add_option("--save", options->save, "where to write the run that breaks a property");
+  verb->add_option("--trace", options->trace, "write that run as a trace (MCAP), too");
   verb->add_flag("--json", options->json, "the result as JSON on standard output");
   verb->footer(
       "examples:\n  rondo explore examples/koord/leader.koord --robots 8\n"

@@ -33,7 +33,7 @@ int Run(const Options& options) {
   }
   diag::SourceSet sources;
   diag::Diagnostics ignored;  // it could be read when the trace was made
-  const diag::FileId file = sources.Add("fleet", history.value().run.value("fleet", ""));
+  const diag::FileId file = sources.Add("fleet", sim::TextOf(history.value().run, "fleet"));
   const sim::World world = sim::ReadFleet(sources, file, ignored).world;
   if (options.map && history.value().map.cells.empty()) {
     PrintFailure(fmt::format("`{}` has no map", options.trace));

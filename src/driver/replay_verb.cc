@@ -48,14 +48,13 @@ int Tell(const Options& options, const Verdict& verdict, const Session& session)
 }
 
 // A run that breaks a property: every step must be one of the program's.
-Verdict ReplayRun(const RunFile& run, Session& session) {
-  const auto loaded = LoadKoord({run.program, run.spec, true}, session);
-  if (!loaded) return {false, fmt::format("the program `{}` cannot be used", run.program)};
+Verdict ReplaySteps(const RunFile& run, const koord::Model& model) {
+  if (run.robots < 1 || run.robots > 64) return {false, "the run is not complete"};
   diag::Diagnostics problems;
   koord::semantics::TeamOptions team_options;
   team_options.robots = run.robots;
-  AdoptParameters(run, loaded->model, team_options);
-  const auto team = koord::semantics::Team::Make(loaded->model, team_options, problems);
+  AdoptParameters(run, model, team_options);
+  const auto team = koord::semantics::Team::Make(model, team_options, problems);
   if (!team) {
     return {false,
             fmt::format("the program cannot be executed: {}",
@@ -65,6 +64,12 @@ Verdict ReplayRun(const RunFile& run, Session& session) {
   if (!differs.empty()) return {false, differs};
   return {true, fmt::format("replayed: {} steps of {} robots; it breaks {}", run.steps.size(), run.robots,
                             run.property)};
+}
+
+Verdict ReplayRun(const RunFile& run, Session& session) {
+  const auto loaded = LoadKoord({run.program, run.spec, true}, session);
+  if (!loaded) return {false, fmt::format("the program `{}` cannot be used", run.program)};
+  return ReplaySteps(run, loaded->model);
 }
 
 std::string Name(const trace::Message& m) {
@@ -101,8 +106,31 @@ std::string FirstDifference(std::string_view a, std::string_view b) {
   return result.empty() ? "the messages are the same; the files differ in their index" : result;
 }
 
-std::string TextAt(const nlohmann::json& run, const char* key) {
-  return run.contains(key) && run[key].is_string() ? run[key].get<std::string>() : std::string();
+// A run of the explorer, kept as a trace.
+Verdict ReplayExplored(const std::string& bytes, const nlohmann::json& record, Session& session) {
+  RunFile run;
+  run.property = sim::TextOf(record, "breaks");
+  run.robots = record.contains("robots") && record["robots"].is_array() ? record["robots"].size() : 0;
+  run.params = record.value("params", nlohmann::json::object());
+  run.choices = record.value("choices", nlohmann::json::object());
+  run.steps = nlohmann::json::array();
+  const auto read = trace::ForEachMessage(bytes, [&](const trace::Message& m) {
+    if (m.topic == "/rondo/step") run.steps.push_back(nlohmann::json::parse(m.bytes, nullptr, false));
+    return true;
+  });
+  if (!read.ok()) return {false, read.error().message};
+  koord::Program program;
+  const auto parse = [&](const char* key) {
+    const std::string text = sim::TextOf(record, key);
+    if (!text.empty())
+      koord::Parse(session.sources, session.sources.Add(key, text), program, session.diagnostics);
+  };
+  parse("program");
+  parse("spec");
+  if (session.diagnostics.has_errors()) return {false, "the program that the trace keeps cannot be used"};
+  const koord::Model model = koord::Check(program, session.diagnostics);
+  if (session.diagnostics.has_errors()) return {false, "the program that the trace keeps cannot be used"};
+  return ReplaySteps(run, model);
 }
 
 // A simulation: again from the texts and the seed that it keeps.
@@ -110,11 +138,12 @@ Verdict ReplayTrace(const std::string& bytes, Session& session) {
   const auto history = sim::ReadHistory(bytes);
   if (!history.ok()) return {false, history.error().message};
   const nlohmann::json& run = history.value().run;
+  if (sim::TextOf(run, "engine") == "explore") return ReplayExplored(bytes, run, session);
   sim::SimulationOptions options;
-  options.program = TextAt(run, "program");
-  options.spec = TextAt(run, "spec");
-  options.fleet = TextAt(run, "fleet");
-  options.program_name = TextAt(run, "program_name");
+  options.program = sim::TextOf(run, "program");
+  options.spec = sim::TextOf(run, "spec");
+  options.fleet = sim::TextOf(run, "fleet");
+  options.program_name = sim::TextOf(run, "program_name");
   if (!run.contains("seed") || !run["seed"].is_number_unsigned() || !run.contains("duration") ||
       !run["duration"].is_number())
     return {false, "the record of the run is damaged"};

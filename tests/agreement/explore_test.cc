@@ -10,6 +10,7 @@
 #include "explore/search.h"
 #include "koord/check/check.h"
 #include "koord/prove/prove.h"
+#include "koord/semantics/round_execution.h"
 #include "koord/semantics/system.h"
 #include "koord/syntax/parser.h"
 #include "solve/z3/z3_solver.h"
@@ -283,6 +284,52 @@ TEST(ExploreAgreement, ReductionsLoseNothing) {
   }
   EXPECT_GT(complete, 100U);
   EXPECT_GT(symmetric, 10U);
+}
+
+TEST(ExploreAgreement, ASimulatedRoundIsOneOfTheRoundsThatAreExplored) {
+  size_t rounds = 0;
+  for (uint64_t seed = 20'001; seed <= 20'000 + Cases(200); ++seed) {
+    const std::string text = Texts(seed).Whole();
+    Loaded loaded(text);
+    ASSERT_TRUE(loaded.good());
+    diag::Diagnostics diagnostics;
+    const auto team = Team::Make(loaded.model, {3, {}, {}, {}}, diagnostics);
+    ASSERT_NE(team, nullptr);
+    System system(*team, {}, diagnostics);
+    std::vector<semantics::Word> state;
+    system.Initial([&](std::span<const semantics::Word> packed) {
+      state = system.Unpack(packed);
+      return explore::Seen::kStop;
+    });
+    if (state.empty()) continue;
+    std::mt19937_64 random(seed);
+    semantics::ProgramTransition transition(*team);
+    for (int k = 0; k < 10; ++k) {
+      const std::vector<semantics::Word> before = state;
+      semantics::RoundExecution round(*team);
+      round.Begin(state);
+      std::vector<size_t> order{0, 1, 2};
+      std::shuffle(order.begin(), order.end(), random);
+      bool failed = false;
+      for (const size_t r : order) {
+        const auto enabled = round.Enabled(r);
+        if (enabled.empty() || random() % 4 == 0) continue;
+        failed = failed ||
+                 round.Run(r, enabled[random() % enabled.size()]) == semantics::RoundExecution::Ran::kFailed;
+      }
+      if (failed) break;
+      round.Finish();
+      transition.Prepare(before);
+      bool found = false;
+      transition.Enumerate([&](std::span<const semantics::Word> after, bool) {
+        found = std::equal(after.begin(), after.end(), state.begin());
+        return !found;
+      });
+      ASSERT_TRUE(found) << "seed " << seed << "\n" << text;
+      ++rounds;
+    }
+  }
+  EXPECT_GT(rounds, 500U);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from random import Random
 
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
@@ -149,6 +150,20 @@ def runs(rondo, folder):
         saved.write_text(broken)
         done = run(rondo, "replay", saved)
         check(done.returncode == 1, f"a broken run ends with {done.returncode}: {broken[:40]}")
+    # Bytes and values changed at random: never anything but "the same" or "differs".
+    random = Random(7)
+    trace = folder / "run.mcap"
+    done = run(rondo, "explore", "examples/koord/mutex_naive.koord", "--trace", trace)
+    check(run(rondo, "replay", trace).returncode == 0, "a run kept as a trace")
+    for good in (text.encode(), trace.read_bytes()):
+        for _ in range(150):
+            data = bytearray(good)
+            for _ in range(random.randint(1, 3)):
+                at = random.randrange(len(data))
+                data[at : at + random.randint(1, 4)] = random.choice([b"", b"0", b"[]", b"{}", b'"', b"null", b"-1", bytes([random.randrange(256)])])
+            saved.write_bytes(data)
+            done = run(rondo, "replay", saved)
+            check(done.returncode in (0, 1), f"a damaged run ends with {done.returncode}: {done.stdout}{done.stderr}")
     # A counterexample of the prover that a search turns into a run, with the parameters of the counterexample.
     program = folder / "drift.koord"
     program.write_text("param int limit\nassume limit >= 2 and limit <= 2\nlocal:\n    int n = 0\n    int m = 0\nStep:\n    eff:\n        n = m\n        m = m + limit\ninvariant small: forall i in ID: n[i] <= 3\n")

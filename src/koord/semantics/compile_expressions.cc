@@ -146,7 +146,8 @@ void Compiler::ReadVariable(size_t v) {
   if (variable.kind == VariableKind::kParam) {
     Emit(Op::kParam, place.at, place.width);
   } else if (variable.kind == VariableKind::kAllread) {
-    Emit(Op::kRow, place.at, place.width * std::max<uint32_t>(1, place.length));
+    const size_t items = std::max<uint32_t>(1, place.length);
+    Emit(Op::kRow, place.at, place.width * items);
   } else if (place.own) {
     used_robot_ = true;
     if (place.length > 0)

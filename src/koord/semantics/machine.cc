@@ -176,8 +176,8 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         const int64_t k = ToInt(*--s);
         const bool inside = k >= 0 && static_cast<uint64_t>(k) < i->c;
         if (!inside && !total) RONDO_FAIL(kIndex);
-        const Word* from =
-            memory + (i->op == Op::kOwnAt ? own : 0) + i->a + (inside ? static_cast<uint32_t>(k) : 0) * i->b;
+        const size_t item = inside ? static_cast<size_t>(k) : 0;
+        const Word* from = memory + (i->op == Op::kOwnAt ? own : 0) + i->a + item * i->b;
         for (uint32_t w = 0; w < i->b; ++w) *s++ = inside ? from[w] : 0;
         break;
       }
@@ -385,7 +385,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         s[-1] = ToFloat(s[-1]) <= ToFloat(s[0]);
         break;
       case Op::kEqual: {
-        s -= 2 * i->a;
+        s -= size_t{2} * i->a;
         bool equal = true;
         for (uint32_t k = 0; k < i->a; ++k) equal = equal && s[k] == s[k + i->a];
         *s++ = equal;
@@ -508,7 +508,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
       }
       case Op::kGridFloat:
       case Op::kGridPos: {
-        const int axes = i->op == Op::kGridPos ? 3 : 1;
+        const ptrdiff_t axes = i->op == Op::kGridPos ? 3 : 1;
         const double step = ToFloat(*--s);
         s -= 2 * axes;
         if (!(step > 0)) RONDO_FAIL(kDivision);

@@ -168,6 +168,7 @@ std::string Replay(Team& team, const json& run) {
     const json& step = run[i];
     if (!step.is_object() || !step.contains("state") || !step.contains("kind"))
       return fmt::format("step {} is no step", i);
+    if (step.contains("events") && !step["events"].is_array()) return fmt::format("step {} is no step", i);
     const bool known =
         i == 0 ? step["kind"] == "start"
                : step["kind"] == "program" || step["kind"] == "environment" || step["kind"] == "prefix";

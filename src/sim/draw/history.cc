@@ -9,6 +9,11 @@ namespace rondo::sim {
 
 using nlohmann::json;
 
+std::string TextOf(const json& record, const char* key) {
+  const bool text = record.is_object() && record.contains(key) && record[key].is_string();
+  return text ? record[key].get<std::string>() : std::string();
+}
+
 base::Result<History> ReadHistory(std::string_view bytes) {
   History history;
   std::map<std::string, size_t, std::less<>> robots;
@@ -59,7 +64,7 @@ base::Result<History> ReadHistory(std::string_view bytes) {
   });
   if (!done.ok()) return done.error();
   if (!problem.empty()) return base::Error{problem};
-  if (!history.run.is_object() || history.run.value("format", "") != "rondo-trace/1")
+  if (TextOf(history.run, "format") != "rondo-trace/1")
     return base::Error{"this is no trace of Rondo's simulator"};
   return history;
 }

@@ -11,7 +11,7 @@
 namespace rondo::sim {
 
 /// What a trace of a simulation tells, as far as pictures need it.
-struct History {
+struct History {       // NOLINT(bugprone-exception-escape): moving JSON checks itself
   nlohmann::json run;  ///< the record `/rondo/run`
   struct Robot {
     std::string name;
@@ -27,6 +27,9 @@ struct History {
   trace::Grid map;                               ///< the last one; no cells if there is none
   std::vector<std::pair<double, size_t>> known;  ///< known cells of the map over time
 };
+
+/// The text that a record has under this key; empty if it has none.
+std::string TextOf(const nlohmann::json& record, const char* key);
 
 /// @error if the bytes are no trace of Rondo's simulator.
 base::Result<History> ReadHistory(std::string_view bytes);

@@ -165,9 +165,9 @@ Point PositionAt(const History::Robot& robot, double time) {
 
 void Touches(Canvas& canvas, const History& history) {
   for (const auto& [time, event] : history.events) {
-    if (event.value("event", "") != "collision") continue;
+    if (TextOf(event, "event") != "collision") continue;
     for (const auto& robot : history.robots) {
-      if (robot.name != event.value("robot", "") || robot.poses.empty()) continue;
+      if (robot.name != TextOf(event, "robot") || robot.poses.empty()) continue;
       const Point p = PositionAt(robot, time);
       canvas.Circle(p[0], p[1], 7, "fill=\"none\" stroke=\"red\" stroke-width=\"2\"");
     }
@@ -175,8 +175,8 @@ void Touches(Canvas& canvas, const History& history) {
 }
 
 std::string Title(const History& history) {
-  return fmt::format("{}, {} robots, seed {}", history.run.value("program_name", "program"),
-                     history.robots.size(), history.run.contains("seed") ? history.run["seed"].dump() : "?");
+  return fmt::format("{}, {} robots, seed {}", TextOf(history.run, "program_name"), history.robots.size(),
+                     history.run.contains("seed") ? history.run["seed"].dump() : "?");
 }
 
 }  // namespace

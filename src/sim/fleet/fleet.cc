@@ -289,10 +289,10 @@ class Reader {
       for (size_t i = 0; i < count; ++i) {
         robot = first;
         if (t.contains("count")) robot.name = fmt::format("{}{}", first.name, i);
-        for (size_t k = 0; k < 3; ++k) {
-          robot.position[k] +=
-              static_cast<double>(i % columns) * step[k] + static_cast<double>(i / columns) * row_step[k];
-        }
+        const size_t column = i % columns;
+        const size_t row = i / columns;
+        for (size_t k = 0; k < 3; ++k)
+          robot.position[k] += static_cast<double>(column) * step[k] + static_cast<double>(row) * row_step[k];
         if (!names.insert(robot.name).second)
           Wrong(robot.span, fmt::format("there are two robots `{}`", robot.name));
         fleet_.robots.push_back(robot);

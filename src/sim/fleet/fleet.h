@@ -36,7 +36,7 @@ struct Lidar {
 };
 
 /// A value of the program that the fleet file gives.
-struct FleetValue {
+struct FleetValue {  // NOLINT(bugprone-exception-escape): moving JSON checks itself
   nlohmann::json value;
   diag::Span span;
 };

@@ -61,8 +61,10 @@ void Draw(GridMap& map, const Point& from, const Rays& rays, double range) {
       if (map.At(c, r) != GridMap::kUnknown) continue;
       bool seen = true;
       for (int corner = 0; corner < 4 && seen; ++corner) {
-        const double x = map.x0 + (c + corner % 2) * map.cell - from[0];
-        const double y = map.y0 + (r + corner / 2) * map.cell - from[1];
+        const int right = corner % 2;
+        const int up = corner / 2;
+        const double x = map.x0 + (c + right) * map.cell - from[0];
+        const double y = map.y0 + (r + up) * map.cell - from[1];
         seen = std::hypot(x, y) < free(std::atan2(y, x));
       }
       // The rays around the middle, too: a thin obstacle may stand between the corners.

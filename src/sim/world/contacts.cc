@@ -25,8 +25,8 @@ struct Contacts::Impl {
 
 Contacts::Contacts(const World& world, const std::vector<double>& radii) : impl_(std::make_unique<Impl>()) {
   int number = 0;
-  const auto add = [&](std::shared_ptr<fcl::CollisionGeometryd> shape, const Point& at) {
-    auto object = std::make_unique<fcl::CollisionObjectd>(std::move(shape));
+  const auto add = [&](const std::shared_ptr<fcl::CollisionGeometryd>& shape, const Point& at) {
+    auto object = std::make_unique<fcl::CollisionObjectd>(shape);
     object->setTranslation(fcl::Vector3d(at[0], at[1], at[2]));
     object->computeAABB();
     object->setUserData(Impl::Tag(-1 - number++));
