@@ -41,6 +41,10 @@ Result<bool> WriteFileAtomically(const std::filesystem::path& path, std::string_
   std::error_code failure;
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failure);
   if (failure) return Error{failure.message()};
+  // A device or a folder must not be replaced.
+  if (std::filesystem::exists(path, failure) && !std::filesystem::is_regular_file(path, failure))
+    return Error{"it is not a regular file"};
+  failure.clear();
   std::filesystem::path temporary = path;
   temporary += fmt::format(".{}.{}.tmp", ::getpid(), serial++);
   {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cfenv>
 #include <random>
 
 #include "koord/check/spec_labels.h"
@@ -29,7 +30,9 @@ void ReportBroken(Team& team, System& system, const std::vector<std::vector<koor
                   const explore::Broken& broken, Explored& explored, diag::Diagnostics& diagnostics) {
   const koord::Model& model = team.model();
   const auto detail = system.detail();
+  std::feclearexcept(FE_ALL_EXCEPT);
   const auto run = system.Explain(path, broken);
+  explored.rounded = std::fetestexcept(FE_INEXACT) != 0 || team.rounds_literals();
   const std::string table = koord::semantics::Tell(team, run);
   const size_t rounds = RoundsOf(run);
   explored.broken = true;
@@ -48,6 +51,8 @@ void ReportBroken(Team& team, System& system, const std::vector<std::vector<koor
         if (!team.Holds(invariant, &robot) && invariant.per_robot)
           report.Under(fmt::format("of robot {}", robot));
       }
+      if (explored.rounded)
+        report.Note("doubles are rounded in this run: with exact numbers it may not exist");
       report.Note(fmt::format("with {} robot{}:\n{}", team.robots(), team.robots() == 1 ? "" : "s", table));
       break;
     }
@@ -125,6 +130,8 @@ std::vector<size_t> DeclaredSizes(const koord::Model& model, diag::Diagnostics& 
                          "a team that is explored has 1 to 64 robots");
     }
   }
+  if (items.empty())
+    diagnostics.Report(Kind::kKoordNotExecutable, e.span, "a team that is explored has 1 to 64 robots");
   return sizes;
 }
 
@@ -138,7 +145,7 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
     return explored;
   }
   const size_t before = diagnostics.errors();
-  System system(*team, {options.reduce, options.symmetry}, diagnostics);
+  System system(*team, {options.reduce, options.symmetry, options.only}, diagnostics);
   explored.symmetric = system.symmetric();
   for (const auto& part : team->unchecked()) {
     diagnostics
@@ -207,6 +214,16 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
                   : fmt::format("zero, false or empty at the start: {}", fmt::join(explored.zeroed, ", ")))
         .Help("give other initial values: `explore:` and, in the block below, `NAME in [...]`");
     explored.broken = true;
+  }
+  for (size_t i = 0; i < system.undefined().size(); ++i) {
+    if (!system.undefined()[i]) continue;
+    const auto& invariant = team->invariants()[i];
+    explored.unchecked.push_back(invariant.name);
+    diagnostics
+        .Report(Kind::kKoordNotChecked, invariant.span,
+                fmt::format("`{}` is not checked in every state", invariant.name))
+        .Under("in some state an operation in it has no value")
+        .Help("say when it is meant: `... implies ...`");
   }
   if (system.stuck()) {
     explored.stuck = true;

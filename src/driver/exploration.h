@@ -22,7 +22,8 @@ struct ExplorationOptions {
   bool deadlocks = false;
   bool reduce = true;
   bool symmetry = true;
-  uint64_t walks = 0;  ///< random walks instead of a search
+  std::optional<size_t> only;  ///< check this invariant alone
+  uint64_t walks = 0;          ///< random walks instead of a search
   uint64_t steps = 1000;
   uint64_t seed = 1;
   std::map<size_t, std::vector<koord::semantics::Word>> params;
@@ -40,6 +41,7 @@ struct Explored {
   bool symmetric = false;
   bool broken = false;  ///< something was reported as an error
   bool stuck = false;
+  bool rounded = false;   ///< doubles were rounded in the run that breaks something
   bool unusable = false;  ///< the program cannot be executed: reported
   uint64_t walked = 0;
   nlohmann::json run;  ///< the counterexample, for `rondo replay`; null if there is none

@@ -137,6 +137,8 @@ int Run(const Options& options) {
     const std::vector<size_t> declared = DeclaredSizes(loaded->model, session.diagnostics);
     if (sizes.empty()) sizes = declared.empty() ? std::vector<size_t>{1, 2, 3} : declared;
   }
+  std::sort(sizes.begin(), sizes.end());
+  sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
   const bool good = !session.diagnostics.has_errors();
   ExplorationOptions exploration;
   if (options.depth > 0) exploration.rounds = options.depth;

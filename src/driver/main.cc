@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <new>
 
 #include "driver/exit_status.h"
 #include "driver/terminal.h"
@@ -45,6 +46,9 @@ int Main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);
     return code == 0 ? kEstablished : kUsage;
+  } catch (const std::bad_alloc&) {
+    PrintFailure("out of memory");
+    return kUndecided;
   } catch (const std::exception& error) {
     PrintFailure(fmt::format("bug: {}", error.what()));
     return kBug;

@@ -45,6 +45,7 @@ std::vector<Reached> SearchWitnesses(const koord::Model& model, koord::Report& r
     if (row.verdict != koord::Verdict::kNotInductive || !row.witness) continue;
     ExplorationOptions options = given;
     options.rounds = rounds;
+    options.only = static_cast<size_t>(&row - report.rows.data());  // rows are invariants, in their order
     Adopt(model, *row.witness, options);
     const auto robots = static_cast<size_t>(row.witness->robots);
     diag::Diagnostics found;
@@ -55,7 +56,8 @@ std::vector<Reached> SearchWitnesses(const koord::Model& model, koord::Report& r
       reached.text = fmt::format("{}: cannot be explored: {}", row.name,
                                  found.all().empty() ? std::string("no reason") : found.all()[0].message);
     } else if (reached.found) {
-      row.verdict = koord::Verdict::kRefuted;
+      // Over real numbers, a run in which doubles were rounded may not exist.
+      if (!explored.rounded) row.verdict = koord::Verdict::kRefuted;
       for (const diag::Diagnostic& d : found.all()) {
         if (d.kind != diag::Kind::kKoordViolated) continue;
         auto& told = diagnostics.Report(d.kind, d.span, d.message);
@@ -66,7 +68,8 @@ std::vector<Reached> SearchWitnesses(const koord::Model& model, koord::Report& r
       RunFile run{file, spec, robots, explored.property, "prove --reach", explored.run};
       KeepParameters(run, model, {robots, options.params, options.choices, {}});
       if (SaveRun(path, run).ok()) reached.run = path;
-      reached.text = fmt::format("{}: reachable for {}{}", row.name, scope,
+      reached.text = fmt::format("{}: reachable for {}{}{}", row.name, scope,
+                                 explored.rounded ? ", where doubles are rounded" : "",
                                  reached.run.empty() ? "" : fmt::format(": `rondo replay {}`", reached.run));
     } else if (explored.broken) {
       reached.text = fmt::format("{}: another property breaks first: {}", row.name, explored.property);

@@ -60,7 +60,7 @@ Verdict ReplaySteps(const RunFile& run, const koord::Model& model) {
             fmt::format("the program cannot be executed: {}",
                         problems.all().empty() ? std::string("no reason") : problems.all()[0].message)};
   }
-  const std::string differs = koord::semantics::Replay(*team, run.steps);
+  const std::string differs = koord::semantics::Replay(*team, run.steps, run.property);
   if (!differs.empty()) return {false, differs};
   return {true, fmt::format("replayed: {} steps of {} robots; it breaks {}", run.steps.size(), run.robots,
                             run.property)};

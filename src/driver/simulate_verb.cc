@@ -42,7 +42,7 @@ std::string Summary(const sim::SimulationReport& report, double seconds) {
     text += fmt::format("  {}; the first at {:.6g} s: {}\n", Count(report.collisions, "collision"),
                         report.first_collision, report.first_pair);
   } else {
-    text += "  no collision\n";
+    text += fmt::format("  no collision, looked at every {:.3g} s\n", report.observed_every);
   }
   if (std::isfinite(report.least_between_robots))
     text += fmt::format("  robots never closer than {:.3f} m\n", report.least_between_robots);
@@ -74,6 +74,7 @@ nlohmann::json ToJson(const sim::SimulationReport& report) {
       {"events", report.events},
       {"ended", report.ended},
       {"collisions", report.collisions},
+      {"observed_every", report.observed_every},
       {"least_between_robots", Finite(report.least_between_robots)},
       {"least_to_obstacles", Finite(report.least_to_obstacles)},
       {"violations", violations},

@@ -65,8 +65,12 @@ SearchResult Search(S& system, const SearchOptions& options) {
   const size_t words = system.words();
   uint32_t current = kNone;
   bool full = false;
+  bool stopped = false;  // in the middle of a state
   const Visit visit = [&](std::span<const Word> state) {
-    ++result.transitions;
+    if ((++result.transitions & 0xffff) == 0 && options.stop.StopRequested()) {
+      stopped = true;
+      return Seen::kStop;
+    }
     bool fresh = false;
     visited.Insert(state, fresh);
     if (!fresh) return Seen::kKnown;
@@ -114,6 +118,10 @@ SearchResult Search(S& system, const SearchOptions& options) {
         break;
       }
       done = report(system.Successors(state, visit));
+      if (!done && stopped) {
+        result.ending = Ending::kStopped;
+        done = true;
+      }
       if (!done && full) {
         result.ending = Ending::kStates;
         done = true;

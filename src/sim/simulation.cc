@@ -47,7 +47,13 @@ class Run {
 
   SimulationReport Go() {
     ports_ = FindPorts(model_, diagnostics_);
-    if (!MakeTeam() || !MakeRobots() || !Start()) return std::move(report_);
+    const bool maps =
+        std::any_of(model_.variables.begin(), model_.variables.end(), [&](const koord::Variable& v) {
+          return v.kind == koord::VariableKind::kAllwrite && model_.types.Is(v.type, lang::TypeKind::kOpaque);
+        });
+    if (fleet_.until == "mapped" && !maps)
+      diagnostics_.Report(Kind::kFleetValue, fleet_.until_span, "the program draws no shared map");
+    if (!MakeTeam() || diagnostics_.has_errors() || !MakeRobots() || !Start()) return std::move(report_);
     report_.ran = true;
     const double end = options_.duration > 0 ? options_.duration : fleet_.duration;
     const auto rounds = static_cast<uint64_t>(std::ceil(end / fleet_.delta - 1e-9));
@@ -392,6 +398,9 @@ class Run {
     const uint64_t monitor = Every(fleet_.monitor, dt);
     const uint64_t pose = Every(1 / fleet_.pose_rate, dt);
     const uint64_t scan = Every(1 / fleet_.lidar.rate, dt);
+    // Small teams are looked at after every step: fast robots are through each other soon.
+    const uint64_t touch = bodies_.size() <= 100 ? 1 : monitor;
+    report_.observed_every = static_cast<double>(touch) * dt;
     const bool scans =
         std::any_of(ports_.begin(), ports_.end(), [](const Port& p) { return p.role == PortRole::kScans; });
     settled_ = state_;
@@ -400,7 +409,7 @@ class Run {
       // Up to the next instant at which something is looked at.
       uint64_t n = 1;
       const auto due = [&](uint64_t every) { return (step_ + n) % every == 0; };
-      while (i + n < steps && !due(monitor) && !due(pose) && !(scans && due(scan))) ++n;
+      while (i + n < steps && !due(monitor) && !due(pose) && !due(touch) && !(scans && due(scan))) ++n;
       if (!Move(n, dt, t + static_cast<double>(i) * dt)) return;
       i += n;
       step_ += n;
@@ -410,10 +419,10 @@ class Run {
         for (size_t r = 0; r < bodies_.size(); ++r) recorder_.Pose(now, r, *bodies_[r]);
       }
       if (scans && step_ % scan == 0) Scan(now);
+      if (step_ % touch == 0 || i == steps) Observe(now);
       if (step_ % monitor == 0 || i == steps) {
         Sense();
         monitor_->During(now, state_, settled_);
-        Observe(now);
       }
     }
     report_.time = t + fleet_.delta;

@@ -37,7 +37,8 @@ struct SimulationReport {
   double time = 0;   ///< seconds simulated
   uint64_t rounds = 0;
   uint64_t events = 0;
-  uint64_t collisions = 0;  ///< beginnings of contacts
+  double observed_every = 0;  ///< seconds between looks at contacts and distances
+  uint64_t collisions = 0;    ///< beginnings of contacts
   double first_collision = -1;
   std::string first_pair;
   /// Metres between surfaces; infinite if there is nothing, or (beyond 200 robots) if it is not measured.

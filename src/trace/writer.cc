@@ -38,6 +38,8 @@ base::Result<Writer> Writer::Open(const std::string& path) {
   std::error_code failed;
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder, failed);
+  if (std::filesystem::exists(path, failed) && !std::filesystem::is_regular_file(path, failed))
+    return base::Error{"it is not a regular file"};
   Writer writer(path);
   writer.file_ = std::fopen(Partial(path).c_str(), "wb");
   if (writer.file_ == nullptr) return base::Error{std::strerror(errno)};

@@ -263,9 +263,9 @@ TEST(ExploreAgreement, ReductionsLoseNothing) {
     Loaded loaded(text);
     ASSERT_TRUE(loaded.good());
     for (size_t n = 1; n <= 3; ++n) {
-      const Outcome all = ExploreAll(loaded.model, n, {false, false}, true);
-      const Outcome reduced = ExploreAll(loaded.model, n, {true, false}, true);
-      const Outcome renamed = ExploreAll(loaded.model, n, {true, true}, true);
+      const Outcome all = ExploreAll(loaded.model, n, {false, false, {}}, true);
+      const Outcome reduced = ExploreAll(loaded.model, n, {true, false, {}}, true);
+      const Outcome renamed = ExploreAll(loaded.model, n, {true, true, {}}, true);
       const bool cut = all.search.ending == explore::Ending::kStates;
       if (cut) continue;
       ASSERT_EQ(all.search.ending, reduced.search.ending) << "seed " << seed << ", N = " << n << "\n" << text;

@@ -36,6 +36,23 @@ std::string AssumptionName(const Model& model, const AssumeDef& def) {
 
 std::string SummaryName(const SummaryDef& def) { return "summary " + def.function; }
 
+bool UsesFloatArithmetic(const Model& model) {
+  for (size_t i = 0; i < model.program->exprs.size(); ++i) {
+    const ExprId id(i);
+    const lang::Expr& e = model.program->exprs[id];
+    const TypeId type = model.TypeOf(id);
+    const bool real = model.types.Is(type, lang::TypeKind::kFloat) || type == model.types.pos();
+    const bool arithmetic = e.kind == lang::ExprKind::kBinary &&
+                            (e.text == "+" || e.text == "-" || e.text == "*" || e.text == "/");
+    const Ref ref = model.RefOf(id);
+    const bool middle = e.kind == lang::ExprKind::kCall && ref.kind == RefKind::kBuiltin &&
+                        (static_cast<Builtin>(ref.index) == Builtin::kMid ||
+                         static_cast<Builtin>(ref.index) == Builtin::kDist);
+    if (real && (arithmetic || middle)) return true;
+  }
+  return false;
+}
+
 bool UsesOld(const Model& model, ExprId id) {
   const lang::Expr& e = model.program->exprs[id];
   const Ref ref = model.RefOf(id);

@@ -12,6 +12,9 @@ std::string InvariantName(const Model& model, size_t i);
 std::string AssumptionName(const Model& model, const AssumeDef& def);
 std::string SummaryName(const SummaryDef& def);
 
+/// Is there arithmetic on floats or points? Proofs compute with real numbers, robots with doubles.
+bool UsesFloatArithmetic(const Model& model);
+
 /// Does it contain `old(...)`?
 bool UsesOld(const Model& model, ExprId e);
 /// A controller assumption that must hold at every moment, not only as the consequence of a condition.

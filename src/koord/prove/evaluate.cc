@@ -106,6 +106,7 @@ TermId Executor::Eval(ExprId id) {
     case ExprKind::kFloat:
       return arena_.Number(arena_.Real(), Rational::Parse(e.text).value_or(Rational(0)));
     case ExprKind::kString:
+      vocabulary_.MarkTexts();
       return vocabulary_.StringLiteral(e.text);
     case ExprKind::kBool:
       return arena_.Constant(e.text == "true");
@@ -281,6 +282,7 @@ TermId Executor::Arithmetic(const lang::Expr& e) {
 }
 
 TermId Executor::Concatenate(TermId a, TermId b) {
+  vocabulary_.MarkTexts();
   const SortId left = arena_.sort_of(a);
   const SortId right = arena_.sort_of(b);
   const std::string name = fmt::format("concat {} {}", arena_.sort(left).name, arena_.sort(right).name);

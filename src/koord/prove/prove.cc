@@ -308,6 +308,10 @@ class Prover {
                             fmt::format("no proof uses `{}`", name));
       }
     }
+    const bool proved = std::any_of(report_.rows.begin(), report_.rows.end(),
+                                    [](const Row& r) { return r.verdict == Verdict::kProved; });
+    if (proved && UsesFloatArithmetic(model_))
+      report_.assumed.push_back("floats are exact (on robots, doubles round)");
     report_.unconstrained = problems.theory().Unconstrained();
   }
 

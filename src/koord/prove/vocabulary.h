@@ -35,6 +35,9 @@ class Vocabulary {
   expr::SymbolId Function(size_t function, const std::string& planner_suffix);
   expr::SymbolId Dist();
   /// `dist` is known by axioms only, so a model may take a distance that is none.
+  /// Texts are only known to be equal or not: counterexamples with them are possible, never certain.
+  void MarkTexts() { uses_texts_ = true; }
+  bool uses_texts() const { return uses_texts_; }
   bool uses_dist() const { return uses_dist_; }
 
   /// Can a robot stop at all? If not, no state has to say that it has not.
@@ -60,6 +63,7 @@ class Vocabulary {
   std::unordered_map<TypeId, SortId> sorts_;
   std::vector<TermId> literals_;
   bool uses_dist_ = false;
+  bool uses_texts_ = false;
   bool robots_stop_ = false;
 };
 

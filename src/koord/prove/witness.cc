@@ -193,6 +193,7 @@ class Storyteller {
                              [&](const auto& line) { return std::get<0>(line) == name; }))
         return;
       if (!end) {
+        if (before.contains(name)) return;
         before[name] = Show(sat, term);
         if (initial || model_.variables[v].kind == VariableKind::kParam)
           lines.emplace_back(name, v, before[name], before[name]);
@@ -338,7 +339,7 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::option
     const auto found = Confirm(problem, wanted, Small(arena, wanted), complete, solver, budget, stop);
     if (!found) return std::nullopt;
     return Witness{action,
-                   found->confirmed && !problems.uses_dist(),
+                   found->confirmed && !problems.uses_dist() && !problems.vocabulary().uses_texts(),
                    reachable,
                    !initial && storyteller.Moved(found->sat),
                    n,

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cfenv>
+#include <charconv>
 
 #include "koord/semantics/environment.h"
 #include "koord/semantics/program_transition.h"
@@ -21,8 +23,10 @@ bool ToWords(const lang::TypeTable& types, TypeId id, const expr::Value& value, 
     case TypeKind::kInt: {
       if (!value.IsNumber() || !value.AsNumber().IsInteger()) return false;
       const std::string digits = value.AsNumber().ToString();
-      if (digits.size() > 18) return false;
-      words.push_back(semantics::FromInt(std::stoll(digits)));
+      int64_t number = 0;
+      const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+      if (problem != std::errc() || end != digits.data() + digits.size()) return false;
+      words.push_back(semantics::FromInt(number));
       return true;
     }
     case TypeKind::kFloat: {
@@ -70,7 +74,19 @@ class Replay {
       : model_(model), invariant_(invariant), witness_(witness) {}
 
   WitnessReplay Run() {
+    std::feclearexcept(FE_ALL_EXCEPT);
     if (!Read()) return {ReplayOutcome::kNotPossible, why_};
+    const WitnessReplay result = Compare();
+    if (result.outcome != ReplayOutcome::kDiffers) return result;
+    // A difference that rounding or an arbitrary value explains is none.
+    if (std::fetestexcept(FE_INEXACT) != 0 || team_->rounds_literals())
+      return {ReplayOutcome::kNotPossible, "doubles are rounded in it"};
+    if (undefined_) return {ReplayOutcome::kNotPossible, "an operation in a formula has no value"};
+    return result;
+  }
+
+ private:
+  WitnessReplay Compare() {
     if (witness_.initial) {
       if (Holds(start_, invariant_)) return Differs("the invariant holds");
       return {ReplayOutcome::kReplayed, ""};
@@ -83,7 +99,6 @@ class Replay {
     return Round();
   }
 
- private:
   static WitnessReplay Differs(std::string why) { return {ReplayOutcome::kDiffers, std::move(why)}; }
 
   bool Refuse(std::string why) {
@@ -140,7 +155,10 @@ class Replay {
 
   bool Holds(std::vector<Word>& state, size_t invariant) {
     team_->machine().SetMemory(state.data());
-    return team_->Holds(team_->invariants()[invariant]);
+    bool defined = true;
+    const bool holds = team_->Holds(team_->invariants()[invariant], nullptr, &defined);
+    undefined_ = undefined_ || !defined;
+    return holds;
   }
 
   // Is the end one of the states in which this round, or a part of its robots, can leave the team?
@@ -197,6 +215,7 @@ class Replay {
   std::vector<Word> start_;
   std::vector<Word> end_;
   std::string why_;
+  bool undefined_ = false;
 };
 
 }  // namespace

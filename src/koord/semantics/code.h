@@ -19,6 +19,7 @@ enum class Op : uint8_t {
   kGlobal,       // push b words of the shared memory at a
   kOwn,          // push b words of the robot's block at a
   kCell,         // pop a robot; push b words of its block at a
+  kCellArray,    // pop a robot; push the list of c items of b words of its block at a
   kRow,          // push the list of b words at a of every robot's block
   kGlobalArray,  // push the list of c items of b words at a
   kOwnArray,
@@ -110,6 +111,8 @@ enum class Fault : uint8_t {
   kReturn,    ///< a function that ends without a value
   kOverflow,  ///< an int beyond 64 bits, or a float that is not finite
   kExternal,  ///< an external function that has no value there
+  kGrid,      ///< a step that is not positive
+  kNoValue,   ///< a set of values that is empty
   kTooLong,   ///< a list or grid of more than a million items
   kNoLock,    ///< no fault: another robot holds the lock of the event, which is a skip then
   kRunaway,   ///< more than a hundred million instructions
@@ -130,6 +133,7 @@ struct Code {
   std::vector<Word> constants;
   std::vector<uint32_t> function_entry;  ///< by function; 0 for external ones
   uint32_t frame_words = 0;
+  bool rounded_literals = false;  ///< some number in the program is no double
 };
 
 }  // namespace rondo::koord::semantics

@@ -1,3 +1,7 @@
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+
 #include "base/check.h"
 #include "expr/rational.h"
 #include "koord/semantics/compiler.h"
@@ -57,14 +61,20 @@ void Compiler::Gen(ExprId id) {
     case ExprKind::kQuantity:
       break;
     case ExprKind::kInt: {
-      const auto number = expr::Rational::Parse(e.text);
-      const std::string digits = number ? number->ToString() : "";
-      if (!number || digits.size() > 18) return Fail(e.span, "this number has more than 64 bits");
-      return Constant(FromInt(std::stoll(digits)));
+      int64_t number = 0;
+      const auto [end, problem] = std::from_chars(e.text.data(), e.text.data() + e.text.size(), number);
+      if (problem != std::errc() || end != e.text.data() + e.text.size())
+        return Fail(e.span, "this number has more than 64 bits");
+      return Constant(FromInt(number));
     }
     case ExprKind::kFloat: {
-      const auto number = expr::Rational::Parse(e.text);
-      return Constant(FromFloat(number ? number->ToDouble() : 0));
+      // The nearest double.
+      const double number = std::strtod(e.text.c_str(), nullptr);
+      if (!std::isfinite(number)) return Fail(e.span, "this number is too large for a double");
+      const auto exact = expr::Rational::Parse(e.text);
+      code_.rounded_literals =
+          code_.rounded_literals || !exact || !(expr::Rational::FromDouble(number) == *exact);
+      return Constant(FromFloat(number + 0.0));
     }
     case ExprKind::kString:
       return Constant(heap_.InternText(Unquoted(e.text)));
@@ -164,7 +174,10 @@ void Compiler::ReadVariable(size_t v) {
 // The robot is on the stack.
 void Compiler::ReadCell(size_t v) {
   const Layout::Place& place = layout_[v];
-  if (place.length > 0) return Fail(span_, "an array in a cell cannot be executed; use a record or a list");
+  if (place.length > 0) {
+    Emit(Op::kCellArray, place.at, place.width, place.length);
+    return;
+  }
   // The robot's own cell.
   if (code_.instructions.back().op == Op::kRobot) {
     code_.instructions.back() = {Op::kOwn, place.at, place.width, 0};

@@ -187,7 +187,10 @@ void Compiler::Method(const Stmt& stmt) {
 void Compiler::Assign(ExprId target) {
   const lang::Expr& e = exprs_[target];
   const Ref ref = model_.RefOf(target);
-  if (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell) return Store(ref.index);
+  if (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell) {
+    assigned_.insert(ref.index);
+    return Store(ref.index);
+  }
   if (ref.kind == RefKind::kBinding) {
     Emit(Op::kSetFrame, FrameOf(ref.index), Width(model_.bindings[ref.index].type));
     return;

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,8 @@ class Compiler {
   const std::vector<std::pair<const Stmt*, bool>>& branches() const { return branches_; }
   /// By kLog: the type of what is logged.
   const std::vector<TypeId>& logged() const { return logged_; }
+  /// Did some statement assign this variable?
+  bool assigned(size_t variable) const { return assigned_.contains(variable); }
   /// Functions without a body that are called.
   const std::vector<size_t>& externals() const { return externals_; }
   /// Summaries that cannot be evaluated, so that calls are not checked against them.
@@ -130,6 +133,7 @@ class Compiler {
   std::vector<std::pair<const Stmt*, bool>> branches_;
   std::vector<TypeId> logged_;
   std::vector<size_t> externals_;
+  std::set<size_t> assigned_;
   std::vector<size_t> wanted_;  // functions whose code is still to be made
   struct LoopJumps {
     std::vector<size_t> breaks;

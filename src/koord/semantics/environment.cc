@@ -60,7 +60,10 @@ bool Environment::Values(size_t v, size_t robot, std::vector<Word>& values) {
   }
   const auto items = team_.heap()[machine.result()[0]];
   values.assign(items.begin(), items.end());
-  return true;
+  if (!values.empty()) return true;
+  fault_ = Fault::kNoValue;
+  fault_span_ = model.program->exprs[model.exploration.choices.at(v)].span;
+  return false;
 }
 
 bool Environment::Allowed(size_t robot, const Word* old) {

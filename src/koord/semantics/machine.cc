@@ -53,6 +53,10 @@ std::string_view Describe(Fault fault) {
       return "the number is too large";
     case Fault::kExternal:
       return "the function has no value here";
+    case Fault::kGrid:
+      return "the step of a grid must be positive";
+    case Fault::kNoValue:
+      return "there is no value in this list";
     case Fault::kTooLong:
       return "the list has more than a million items";
     case Fault::kNoLock:
@@ -70,6 +74,7 @@ Machine::Machine(const Code& code, const Layout& layout, Heap& heap)
   stack_.resize(depth);
   frame_.resize(code.frame_words + 1);
   params_.resize(layout.param_words());
+  logged_.resize(layout.words());
 }
 
 bool Machine::Stop(Fault fault, size_t at) {
@@ -93,7 +98,11 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
   units_.clear();
   calls_.clear();
   fault_ = Fault::kNone;
-  locked_ = stopped_ = in_summary_ = false;
+  locked_ = stopped_ = in_summary_ = used_default_ = false;
+  if (++run_ == 0) {
+    std::fill(logged_.begin(), logged_.end(), 0);
+    run_ = 1;
+  }
   Word* s = stack_.data();  // the first free word
   Word* const frame = frame_.data();
   const Word* memory = memory_;
@@ -108,7 +117,9 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
   };
   const auto write = [&](uint32_t at, const Word* from, uint32_t width) {
     for (uint32_t i = 0; i < width; ++i) {
-      writes_.push_back({at + i, memory_[at + i]});
+      // Once for each address: a loop may write it often.
+      if (logged_[at + i] != run_) writes_.push_back({at + i, memory_[at + i]});
+      logged_[at + i] = run_;
       memory_[at + i] = from[i];
     }
   };
@@ -118,6 +129,12 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
   };
   const auto array = [&](const Word* from, uint32_t words) { *s++ = heap_.Intern({from, words}); };
 #define RONDO_FAIL(what) return Stop(Fault::what, static_cast<size_t>(i - code))
+// In a formula, an operation without a value is zero.
+#define RONDO_TOTAL(what)         \
+  do {                            \
+    if (!total) RONDO_FAIL(what); \
+    used_default_ = true;         \
+  } while (false)
 #define RONDO_FINITE(x)                                \
   do {                                                 \
     const double value_ = (x);                         \
@@ -148,12 +165,22 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
       case Op::kCell: {
         const int64_t r = ToInt(*--s);
         if (r < 0 || static_cast<uint64_t>(r) >= robots) {
-          if (!total) RONDO_FAIL(kIndex);
+          RONDO_TOTAL(kIndex);
           for (uint32_t k = 0; k < i->b; ++k) *s++ = 0;
           break;
         }
         const Word* from = memory + layout_.block(static_cast<size_t>(r)) + i->a;
         for (uint32_t k = 0; k < i->b; ++k) *s++ = from[k];
+        break;
+      }
+      case Op::kCellArray: {
+        const int64_t r = ToInt(*--s);
+        const bool robot_exists = r >= 0 && static_cast<uint64_t>(r) < robots;
+        if (!robot_exists) RONDO_TOTAL(kIndex);
+        if (robot_exists)
+          array(memory + layout_.block(static_cast<size_t>(r)) + i->a, i->b * i->c);
+        else
+          *s++ = 0;
         break;
       }
       case Op::kRow: {
@@ -175,7 +202,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
       case Op::kOwnAt: {
         const int64_t k = ToInt(*--s);
         const bool inside = k >= 0 && static_cast<uint64_t>(k) < i->c;
-        if (!inside && !total) RONDO_FAIL(kIndex);
+        if (!inside) RONDO_TOTAL(kIndex);
         const size_t item = inside ? static_cast<size_t>(k) : 0;
         const Word* from = memory + (i->op == Op::kOwnAt ? own : 0) + i->a + item * i->b;
         for (uint32_t w = 0; w < i->b; ++w) *s++ = inside ? from[w] : 0;
@@ -206,7 +233,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         const int64_t k = ToInt(*--s);
         s -= i->b;
         if (k < 0 || static_cast<uint64_t>(k) >= i->c) {
-          if (!total) RONDO_FAIL(kIndex);
+          RONDO_TOTAL(kIndex);
           break;
         }
         const uint32_t at = (i->op == Op::kSetOwnAt ? own : 0) + i->a + static_cast<uint32_t>(k) * i->b;
@@ -258,7 +285,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         const int64_t b = ToInt(*--s);
         const int64_t a = ToInt(s[-1]);
         if (b == 0) {
-          if (!total) RONDO_FAIL(kDivision);
+          RONDO_TOTAL(kDivision);
           s[-1] = 0;
           break;
         }
@@ -301,7 +328,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         double a = 0, b = 0;
         pop_floats(a, b);
         if (b == 0) {
-          if (!total) RONDO_FAIL(kDivision);
+          RONDO_TOTAL(kDivision);
           s[-1] = 0;
           break;
         }
@@ -331,7 +358,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
           const double a = ToFloat(s[k - 3]);
           const double b = ToFloat(s[k]);
           if (i->op == Op::kDivPos && b == 0) {
-            if (!total) RONDO_FAIL(kDivision);
+            RONDO_TOTAL(kDivision);
             s[k - 3] = 0;
             continue;
           }
@@ -427,7 +454,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         const auto items = heap_[s[0]];
         const int64_t k = ToInt(s[1]);
         const bool inside = k >= 0 && static_cast<uint64_t>(k) < items.size() / i->a;
-        if (!inside && !total) RONDO_FAIL(kIndex);
+        if (!inside) RONDO_TOTAL(kIndex);
         for (uint32_t w = 0; w < i->a; ++w) *s++ = inside ? items[static_cast<size_t>(k) * i->a + w] : 0;
         break;
       }
@@ -437,7 +464,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         const auto items = heap_[s[i->a]];
         const int64_t k = ToInt(s[i->a + 1]);
         if (k < 0 || static_cast<uint64_t>(k) >= items.size() / i->a) {
-          if (!total) RONDO_FAIL(kIndex);
+          RONDO_TOTAL(kIndex);
           s[0] = s[i->a];
           ++s;
           break;
@@ -469,7 +496,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
           break;
         }
         if (at >= items.size()) {
-          if (!total) RONDO_FAIL(kRemove);
+          RONDO_TOTAL(kRemove);
           break;
         }
         buffer_.assign(items.begin(), items.end());
@@ -497,11 +524,12 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         const int64_t low = ToInt(s[-1]);
         const int64_t high = ToInt(s[0]);
         const int64_t step = ToInt(s[1]);
-        if (step <= 0) RONDO_FAIL(kDivision);
+        if (step <= 0) RONDO_FAIL(kGrid);
         buffer_.clear();
-        for (__int128 x = low; x <= high; x += step) {
-          buffer_.push_back(FromInt(static_cast<int64_t>(x)));
+        for (int64_t x = low; x <= high;) {
+          buffer_.push_back(FromInt(x));
           if (buffer_.size() > kLongest) RONDO_FAIL(kTooLong);
+          if (__builtin_add_overflow(x, step, &x)) break;
         }
         s[-1] = heap_.Intern(buffer_);
         break;
@@ -511,7 +539,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         const ptrdiff_t axes = i->op == Op::kGridPos ? 3 : 1;
         const double step = ToFloat(*--s);
         s -= 2 * axes;
-        if (!(step > 0)) RONDO_FAIL(kDivision);
+        if (!(step > 0)) RONDO_FAIL(kGrid);
         size_t count[3] = {1, 1, 1};
         double low[3] = {0, 0, 0};
         for (int k = 0; k < axes; ++k) {
@@ -575,7 +603,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         std::vector<Word> result;
         result.swap(buffer_);
         const bool known = host_ != nullptr && host_->Call(i->a, robot, {s, i->b}, result);
-        if (!known && !total) RONDO_FAIL(kExternal);
+        if (!known) RONDO_TOTAL(kExternal);
         for (const Word w : result) *s++ = w;
         buffer_.swap(result);
         break;
@@ -604,6 +632,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         break;
       case Op::kFault:
         if (!total) return Stop(static_cast<Fault>(i->a), static_cast<size_t>(i - code));
+        used_default_ = true;
         break;
       case Op::kOld:
         memory = old_;
@@ -622,6 +651,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
     ++i;
   }
 #undef RONDO_FAIL
+#undef RONDO_TOTAL
 #undef RONDO_FINITE
 }
 

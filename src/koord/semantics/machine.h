@@ -43,6 +43,9 @@ class Machine {
   bool RunFormula(uint32_t entry, size_t robot) { return Run(entry, robot, true) && stack_[0] != 0; }
   std::span<const Word> result() const { return {stack_.data(), top_}; }
 
+  /// Did the last total run meet an operation without a value, and take zero for it?
+  bool used_default() const { return used_default_; }
+
   Fault fault() const { return fault_; }
   diag::Span fault_span() const { return fault_span_; }
   bool locked() const { return locked_; }
@@ -95,6 +98,9 @@ class Machine {
   std::vector<bool> marks_;
   Fault fault_ = Fault::kNone;
   diag::Span fault_span_;
+  bool used_default_ = false;
+  std::vector<uint32_t> logged_;  // by address: the run that wrote it last
+  uint32_t run_ = 0;
   bool locked_ = false;
   bool lock_taken_ = false;
   bool stopped_ = false;

@@ -183,6 +183,13 @@ bool ProgramTransition::Complete() const {
 }
 
 bool ProgramTransition::Enumerate(const Visit& visit) {
+  like_previous_.assign(team_.robots(), false);
+  const Layout& layout = team_.layout();
+  for (size_t r = 1; alike_ && !init_ && r < team_.robots(); ++r) {
+    const auto block = memory_.begin() + layout.block(r);
+    like_previous_[r] =
+        std::equal(block, block + layout.block_words(), memory_.begin() + layout.block(r - 1));
+  }
   std::fill(lock_holder_.begin(), lock_holder_.end(), -1);
   undo_.clear();
   last_.clear();
@@ -193,10 +200,11 @@ bool ProgramTransition::Enumerate(const Visit& visit) {
 
 bool ProgramTransition::Choose(size_t robot, const Visit& visit) {
   if (robot == team_.robots()) return Settle(visit);
+  const int least = like_previous_[robot] ? choice_[robot - 1] : kSkips;
   choice_[robot] = kSkips;
-  if (!init_ && !Choose(robot + 1, visit)) return false;
+  if (!init_ && least == kSkips && !Choose(robot + 1, visit)) return false;
   const auto effects = Of(robot);
-  for (size_t k = 0; k < effects.size(); ++k) {
+  for (size_t k = static_cast<size_t>(std::max(0, least)); k < effects.size(); ++k) {
     const Effect& effect = effects[k];
     if (effect.fault != Fault::kNone) continue;
     if (effect.idle && !effect.urgent) continue;

@@ -62,6 +62,9 @@ class ProgramTransition {
   /// The same without the reduction: every order of the robots, every prefix. For tests.
   bool EnumerateOrders(const Visit& visit);
 
+  /// Robots can be renamed: of neighbours in the same state, one order of their choices is enough.
+  void TreatAlike(bool alike) { alike_ = alike; }
+
   static constexpr int kSkips = -1;
   /// During `visit`: by robot, its effect or `kSkips`; and who wrote last where several did.
   const std::vector<int>& choice() const { return choice_; }
@@ -98,6 +101,8 @@ class ProgramTransition {
   size_t unit_count_ = 0;
   std::vector<LastWriter> last_;
   bool any_urgent_ = false;
+  bool alike_ = false;
+  std::vector<bool> like_previous_;  // by robot
 };
 
 }  // namespace rondo::koord::semantics

@@ -159,11 +159,37 @@ json RunToJson(const Team& team, const std::vector<Step>& run) {
   return steps;
 }
 
-std::string Replay(Team& team, const json& run) {
+namespace {
+
+// Does the last state, or what can happen in it, break the property?
+bool Breaks(Team& team, System& system, std::vector<Word> state, const std::string& property) {
+  team.machine().SetMemory(state.data());
+  for (const FormulaCode& invariant : team.invariants()) {
+    if (property == "invariant " + invariant.name) return !team.Holds(invariant);
+  }
+  if (property == "deadlock") {
+    bool moves = false;
+    system.StepFrom(state, false, [&](const Step& step) {
+      moves = moves || step.state != state;
+      return moves;
+    });
+    return !moves;
+  }
+  if (property != "well-defined" && !property.starts_with("summary ")) return false;
+  const explore::Broken broken = system.Try(state);
+  if (broken.property < 0) return false;
+  const Trouble trouble = system.TroubleOf(broken.property);
+  return trouble == (property == "well-defined" ? Trouble::kFault : Trouble::kSummary);
+}
+
+}  // namespace
+
+std::string Replay(Team& team, const json& run, const std::string& property) {
   if (!run.is_array() || run.empty()) return "the file has no steps";
   diag::Diagnostics ignored;
-  System system(team, {true, false}, ignored);
+  System system(team, {true, false, {}}, ignored);
   std::vector<Word> here;
+  std::vector<Word> prefix;
   for (size_t i = 0; i < run.size(); ++i) {
     const json& step = run[i];
     if (!step.is_object() || !step.contains("state") || !step.contains("kind"))
@@ -174,12 +200,18 @@ std::string Replay(Team& team, const json& run) {
                : step["kind"] == "program" || step["kind"] == "environment" || step["kind"] == "prefix";
     if (!known) return fmt::format("step {} has no kind that could be", i);
     bool found = false;
-    bool events_seen = i == 0 || !step.contains("events");
+    const bool tells = step.contains("events");
+    if (step["kind"] == "program" && !tells) return fmt::format("step {} does not say who did what", i);
+    bool events_seen = i == 0 || !tells;
     std::vector<Word> next;
     const auto same = [&](std::span<const Word> state) { return StateToJson(team, state) == step["state"]; };
     if (step["kind"] == "prefix") {
       // A part of the robots: compare what they did, whatever the others do.
-      found = events_seen = system.HasPrefix(here, [&](std::span<const Word> s) { return same(s); });
+      found = events_seen = system.HasPrefix(here, [&](std::span<const Word> s) {
+        if (!same(s)) return false;
+        prefix.assign(s.begin(), s.end());
+        return true;
+      });
     } else if (i == 0) {
       system.Initial([&](std::span<const Word> packed) {
         next = system.Unpack(packed);
@@ -204,8 +236,13 @@ std::string Replay(Team& team, const json& run) {
     }
     if (!found) return fmt::format("step {}: the program cannot reach this state", i);
     if (!events_seen) return fmt::format("step {}: other events lead to this state", i);
-    here = next;
+    if (step["kind"] != "prefix")
+      here = next;
+    else
+      here = prefix;
   }
+  if (!Breaks(team, system, here, property))
+    return fmt::format("the run is possible, but it does not break `{}`", property);
   return "";
 }
 

@@ -21,8 +21,10 @@ System::System(Team& team, const SystemOptions& options, diag::Diagnostics& diag
       packed_(packing_.words()),
       canonical_(team.layout().words()),
       enabled_(team.events().size()),
+      undefined_(team.invariants().size()),
       emitted_(team.layout().words()) {
   team.machine().CheckSummaries(true);
+  transition_.TreatAlike(symmetric_);
 }
 
 Trouble System::TroubleOf(int property) const {
@@ -36,7 +38,13 @@ int System::Violated(std::span<const Word> state) {
   // Formulas only read.
   team_.machine().SetMemory(const_cast<Word*>(state.data()));  // NOLINT
   for (size_t i = 0; i < team_.invariants().size(); ++i) {
-    if (!team_.Holds(team_.invariants()[i])) return static_cast<int>(i);
+    if (options_.only && *options_.only != i) continue;
+    bool defined = true;
+    const bool holds = team_.Holds(team_.invariants()[i], nullptr, &defined);
+    if (!defined)
+      undefined_[i] = true;
+    else if (!holds)
+      return static_cast<int>(i);
   }
   return -1;
 }
@@ -204,6 +212,11 @@ void System::StepFrom(std::span<const Word> state, bool environment,
     return visit(step) ? Seen::kStop : Seen::kKnown;
   };
   Expand(here, environment ? 1 : 0, look);
+}
+
+Broken System::Try(std::span<const Word> state) {
+  const std::vector<Word> here(state.begin(), state.end());
+  return Expand(here, 0, [](std::span<const Word>) { return Seen::kKnown; });
 }
 
 bool System::HasPrefix(std::span<const Word> state, const std::function<bool(std::span<const Word>)>& is) {

@@ -12,8 +12,9 @@
 namespace rondo::koord::semantics {
 
 struct SystemOptions {
-  bool reduce = true;    ///< false: every order of the robots, one after the other
-  bool symmetry = true;  ///< where the program allows it
+  bool reduce = true;          ///< false: every order of the robots, one after the other
+  bool symmetry = true;        ///< where the program allows it
+  std::optional<size_t> only;  ///< this invariant alone
 };
 
 /// What one robot did in a round.
@@ -65,6 +66,8 @@ class System {
   const Detail& detail() const { return detail_; }
   /// The environment had no allowed values somewhere: the robot, and the state.
   const std::optional<size_t>& stuck() const { return stuck_; }
+  /// Invariants that met an operation without a value in some state: there, they were not checked.
+  const std::vector<bool>& undefined() const { return undefined_; }
   /// States that the declarations allow but the assumptions do not.
   uint64_t refused_initial() const { return refused_; }
 
@@ -74,6 +77,8 @@ class System {
 
   /// Calls `visit` for each step from `state`, told in full, until it returns true.
   void StepFrom(std::span<const Word> state, bool environment, const std::function<bool(const Step&)>& visit);
+  /// Lists what follows `state`, the start of a round, for what breaks on the way.
+  explore::Broken Try(std::span<const Word> state);
   /// Is there a moment of the program transition from `state`, complete or not, that `is` it?
   bool HasPrefix(std::span<const Word> state, const std::function<bool(std::span<const Word>)>& is);
 
@@ -106,6 +111,7 @@ class System {
   std::optional<size_t> stuck_;
   uint64_t refused_ = 0;
   std::vector<uint64_t> enabled_;
+  std::vector<bool> undefined_;
   std::vector<Word> emitted_;  // the last state, before symmetry
 };
 

@@ -104,6 +104,13 @@ bool Team::Compile(const TeamOptions& options, diag::Diagnostics& diagnostics) {
     if (const auto bad = compiler.TakeUnsupported())
       diagnostics.Report(Kind::kKoordNotExecutable, bad->span, "this cannot be executed").Under(bad->reason);
   };
+  for (const InitDef* def : model_.inits) {
+    inits_.push_back(compiler.Statements(def->body));
+    robots_stop_ = robots_stop_ || Stops(def->body);
+    refuse();
+  }
+  std::vector<bool> initialised;
+  for (size_t v = 0; v < model_.variables.size(); ++v) initialised.push_back(compiler.assigned(v));
   for (const EventDef* def : model_.events) {
     EventCode event{def, 0, 0, def->urgent, false};
     if (def->pre.valid()) event.guard = compiler.Formula(def->pre);
@@ -113,11 +120,6 @@ bool Team::Compile(const TeamOptions& options, diag::Diagnostics& diagnostics) {
     refuse();
     robots_stop_ = robots_stop_ || Stops(def->body);
     events_.push_back(event);
-  }
-  for (const InitDef* def : model_.inits) {
-    inits_.push_back(compiler.Statements(def->body));
-    robots_stop_ = robots_stop_ || Stops(def->body);
-    refuse();
   }
   for (size_t v = 0; v < model_.variables.size(); ++v) {
     const Variable& variable = model_.variables[v];
@@ -156,7 +158,8 @@ bool Team::Compile(const TeamOptions& options, diag::Diagnostics& diagnostics) {
     if (variable.kind == VariableKind::kParam || variable.kind == VariableKind::kSensor ||
         !(*layout_)[v].exists)
       continue;
-    if (!has(declared_) && !has(derived_) && !choices_.contains(v) && !given_choices_.contains(v))
+    if (!has(declared_) && !has(derived_) && !choices_.contains(v) && !given_choices_.contains(v) &&
+        !initialised[v])
       zeroed_.push_back(v);
   }
   for (const auto& [s, why] : compiler.unchecked_summaries())
@@ -246,13 +249,18 @@ void Team::Derive(Compiler& compiler, ExprId id) {
   }
 }
 
-bool Team::Holds(const FormulaCode& formula, size_t* robot) {
+bool Team::Holds(const FormulaCode& formula, size_t* robot, bool* defined) {
+  bool holds = true;
   for (size_t r = 0; r < (formula.per_robot ? robots() : 1); ++r) {
-    if (machine_->RunFormula(formula.entry, r)) continue;
-    if (robot != nullptr) *robot = r;
-    return false;
+    const bool here = machine_->RunFormula(formula.entry, r);
+    const bool known = !machine_->used_default() && machine_->fault() == Fault::kNone;
+    if (defined != nullptr) *defined = *defined && known;
+    if (here) continue;
+    if (holds && robot != nullptr) *robot = r;
+    holds = false;
+    if (defined == nullptr || known) return false;
   }
-  return true;
+  return holds;
 }
 
 std::string Team::ShowLogged(size_t type, std::span<const Word> value) const {

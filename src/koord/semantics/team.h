@@ -88,12 +88,15 @@ class Team {
   const std::vector<std::pair<const Stmt*, bool>>& branches() const { return branches_; }
   /// Variables that have neither a declared nor a derived value, nor choices: they start as zero.
   const std::vector<size_t>& zeroed() const { return zeroed_; }
+  /// Is some number in the program no double?
+  bool rounds_literals() const { return code_.rounded_literals; }
   bool robots_stop() const { return robots_stop_; }
   bool has_sensors() const { return has_sensors_; }
 
   /// Does the formula hold in the memory that the machine looks at? For every robot, if it is about robots;
   /// `robot` is then the first for which it does not.
-  bool Holds(const FormulaCode& formula, size_t* robot = nullptr);
+  /// `defined`: no operation without a value was met on the way.
+  bool Holds(const FormulaCode& formula, size_t* robot = nullptr, bool* defined = nullptr);
   std::string ShowLogged(size_t type, std::span<const Word> value) const;
   TypeId TypeOfVariable(size_t variable) const { return model_.variables[variable].type; }
   /// The value of a variable in a state, for people.

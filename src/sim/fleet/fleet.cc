@@ -106,6 +106,13 @@ class Reader {
     return usual;
   }
 
+  size_t Whole(const toml::table& table, const char* name, size_t usual) {
+    const double value = Number(table, name, static_cast<double>(usual), 1, 100'000);
+    if (value != std::floor(value))
+      Wrong(At(*table.get(name)), fmt::format("`{}` must be a whole number", name));
+    return static_cast<size_t>(value);
+  }
+
   std::string Word(const toml::table& table, const char* name, const std::string& usual,
                    std::initializer_list<const char*> choices) {
     const toml::node* node = table.get(name);
@@ -155,6 +162,7 @@ class Reader {
     fleet_.pose_rate = Number(t, "pose_rate", fleet_.pose_rate, 0.001, 1000);
     fleet_.skip = Number(t, "skip", fleet_.skip, 0, 1);
     fleet_.until = Word(t, "until", "", {"mapped", "stopped"});
+    if (const toml::node* until = t.get("until")) fleet_.until_span = At(*until);
     if (Word(t, "integrator", "rk4", {"rk4", "adaptive"}) == "adaptive")
       fleet_.integrator = Integrator::kAdaptive;
     const std::string policy = Word(t, "policy", "first", {"first", "random", "round_robin"});
@@ -281,8 +289,8 @@ class Reader {
           !robot.name.empty() && std::all_of(robot.name.begin(), robot.name.end(),
                                              [](unsigned char c) { return std::isalnum(c) || c == '_'; });
       if (!good) Wrong(name == nullptr ? robot.span : At(*name), "a name has letters, digits and `_`");
-      const auto count = static_cast<size_t>(Number(t, "count", 1, 1, 100'000));
-      const auto columns = static_cast<size_t>(Number(t, "columns", static_cast<double>(count), 1, 100'000));
+      const size_t count = Whole(t, "count", 1);
+      const size_t columns = Whole(t, "columns", count);
       const Point step = ReadPoint(t, "step", {1, 0, 0}, false, {});
       const Point row_step = ReadPoint(t, "row_step", {0, 1, 0}, false, {});
       const FleetRobot first = robot;

@@ -53,6 +53,7 @@ struct Fleet {
   Integrator integrator = Integrator::kRungeKutta4;
   Policy policy = Policy::kFirst;
   std::optional<uint64_t> seed;
+  diag::Span until_span;
   std::string until;  ///< `mapped`, `stopped` or nothing
   World world;
   Lidar lidar;
