@@ -32,7 +32,7 @@ def check(name, good, detail=""):
 
 LINEFORM = "examples/koord/lineform.koord"
 
-for args in (["--help"], ["check", "--help"], ["prove", "--help"], ["fmt", "--help"], ["explain", "--help"], ["ast", "--help"], ["solve", "--help"], ["certify", "--help"], ["project", "--help"], ["infer", "regions", "--help"]):
+for args in (["--help"], ["check", "--help"], ["prove", "--help"], ["fmt", "--help"], ["explain", "--help"], ["ast", "--help"], ["solve", "--help"], ["certify", "--help"], ["project", "--help"], ["infer", "regions", "--help"], ["explore", "--help"], ["simulate", "--help"], ["replay", "--help"], ["plot", "--help"]):
     done = rondo(*args)
     check(f"{args}", done.returncode == 0 and "example" in done.stdout, done.stdout + done.stderr)
 for args in ([], ["nonsense"], ["prove"], ["prove", LINEFORM, "--robots", "0"], ["explain", "koord-nonsense"]):
@@ -203,7 +203,7 @@ check("fmt --check after", rondo("fmt", "--check", str(ugly)).returncode == 0, u
 check("comments survive", "# count" in ugly.read_text() and "# two" in ugly.read_text(), ugly.read_text())
 ugly.write_text("local: int\n")
 check("fmt of an error", rondo("fmt", str(ugly)).returncode == 1 and ugly.read_text() == "local: int\n")
-for example in sorted((ROOT / "examples/koord").iterdir()):
+for example in sorted([*(ROOT / "examples/koord").glob("*.koord"), *(ROOT / "examples/koord").glob("*.spec")]):
     done = rondo("fmt", "--check", str(example))
     check(f"{example.name} is formatted", done.returncode == 0, done.stdout + done.stderr)
 

@@ -8,6 +8,22 @@
 
 namespace rondo::koord {
 
+namespace {
+
+bool Stops(const std::vector<Stmt>& body) {
+  return std::any_of(body.begin(), body.end(), [](const Stmt& s) {
+    return s.kind == StmtKind::kStop || Stops(s.body) || Stops(s.orelse);
+  });
+}
+
+}  // namespace
+
+bool RobotsStop(const Model& model) {
+  const auto stops = [](const auto* part) { return Stops(part->body); };
+  return std::any_of(model.events.begin(), model.events.end(), stops) ||
+         std::any_of(model.inits.begin(), model.inits.end(), stops);
+}
+
 std::string InvariantName(const Model& model, size_t i) {
   const InvariantDef& def = *model.invariants[i];
   return def.name.empty() ? fmt::format("invariant{}", i + 1) : def.name;

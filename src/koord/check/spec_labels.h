@@ -15,6 +15,9 @@ std::string SummaryName(const SummaryDef& def);
 /// Is there arithmetic on floats or points? Proofs compute with real numbers, robots with doubles.
 bool UsesFloatArithmetic(const Model& model);
 
+/// Can some robot `stop`?
+bool RobotsStop(const Model& model);
+
 /// Does it contain `old(...)`?
 bool UsesOld(const Model& model, ExprId e);
 /// A controller assumption that must hold at every moment, not only as the consequence of a condition.

@@ -1,25 +1,14 @@
 #include "koord/prove/vocabulary.h"
 
-#include <algorithm>
+#include "koord/check/spec_labels.h"
 
 namespace rondo::koord {
 
 using lang::TypeKind;
 
-namespace {
-
-bool Stops(const std::vector<Stmt>& body) {
-  return std::any_of(body.begin(), body.end(), [](const Stmt& s) {
-    return s.kind == StmtKind::kStop || Stops(s.body) || Stops(s.orelse);
-  });
-}
-
-}  // namespace
-
 Vocabulary::Vocabulary(expr::Arena& arena, const Model& model, std::optional<int64_t> robots)
     : arena_(arena), model_(model), fixed_(robots) {
-  for (const EventDef* event : model.events) robots_stop_ = robots_stop_ || Stops(event->body);
-  for (const InitDef* init : model.inits) robots_stop_ = robots_stop_ || Stops(init->body);
+  robots_stop_ = RobotsStop(model);
   robots_ = robots ? arena.IntNumber(*robots) : arena.Variable(arena.Declare("N_sys", {}, arena.Int()));
 }
 

@@ -12,16 +12,6 @@ namespace rondo::koord::semantics {
 using diag::Kind;
 using lang::TypeKind;
 
-namespace {
-
-bool Stops(const std::vector<Stmt>& body) {
-  return std::any_of(body.begin(), body.end(), [](const Stmt& s) {
-    return s.kind == StmtKind::kStop || Stops(s.body) || Stops(s.orelse);
-  });
-}
-
-}  // namespace
-
 std::unique_ptr<Team> Team::Make(const Model& model, const TeamOptions& options,
                                  diag::Diagnostics& diagnostics) {
   std::unique_ptr<Team> team(new Team(model));
@@ -99,6 +89,7 @@ bool Team::Parameters(const TeamOptions& options, diag::Diagnostics& diagnostics
 bool Team::Compile(const TeamOptions& options, diag::Diagnostics& diagnostics) {
   const size_t before = diagnostics.errors();
   layout_ = std::make_unique<Layout>(model_, options.robots, lengths_);
+  robots_stop_ = RobotsStop(model_);
   Compiler compiler(model_, *layout_, heap_, code_);
   const auto refuse = [&] {
     if (const auto bad = compiler.TakeUnsupported())
@@ -106,7 +97,6 @@ bool Team::Compile(const TeamOptions& options, diag::Diagnostics& diagnostics) {
   };
   for (const InitDef* def : model_.inits) {
     inits_.push_back(compiler.Statements(def->body));
-    robots_stop_ = robots_stop_ || Stops(def->body);
     refuse();
   }
   std::vector<bool> initialised;
@@ -118,7 +108,6 @@ bool Team::Compile(const TeamOptions& options, diag::Diagnostics& diagnostics) {
     event.body = compiler.Statements(def->body);
     event.locks = compiler.locks();
     refuse();
-    robots_stop_ = robots_stop_ || Stops(def->body);
     events_.push_back(event);
   }
   for (size_t v = 0; v < model_.variables.size(); ++v) {
