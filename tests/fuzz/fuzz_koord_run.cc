@@ -1,6 +1,7 @@
 // Any bytes that are a program: compiling, exploring and telling a run end, and find nothing that checks
 // forbid.
 #include <cstdint>
+#include <nlohmann/json.hpp>
 
 #include "explore/search.h"
 #include "koord/check/check.h"
