@@ -76,7 +76,7 @@ class Replay {
   WitnessReplay Run() {
     std::feclearexcept(FE_ALL_EXCEPT);
     if (!Read()) return {ReplayOutcome::kNotPossible, why_};
-    const WitnessReplay result = Compare();
+    WitnessReplay result = Compare();
     if (result.outcome != ReplayOutcome::kDiffers) return result;
     // A difference that rounding or an arbitrary value explains is none.
     if (std::fetestexcept(FE_INEXACT) != 0 || team_->rounds_literals())
