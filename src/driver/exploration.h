@@ -33,7 +33,7 @@ struct ExplorationOptions {
 };
 
 /// What became of one team size.
-struct Explored {
+struct Explored {  // NOLINT(bugprone-exception-escape): moving JSON checks itself
   size_t robots = 0;
   explore::SearchResult search;
   uint64_t rounds = 0;        ///< of the deepest state
