@@ -18,4 +18,8 @@ struct LoadedKoord {
 /// `session.diagnostics`.
 std::unique_ptr<LoadedKoord> LoadKoord(const LoadOptions& options, Session& session);
 
+/// The same for texts that are no files (any more). `spec` may be empty.
+std::unique_ptr<LoadedKoord> LoadKoordTexts(const std::string& name, const std::string& program,
+                                            const std::string& spec, Session& session);
+
 }  // namespace rondo::driver

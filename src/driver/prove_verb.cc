@@ -5,14 +5,13 @@
 
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
-#include "driver/load.h"
+#include "driver/koord_load.h"
 #include "driver/motion.h"
 #include "driver/motion_prove.h"
 #include "driver/prove_report.h"
 #include "driver/reach.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
-#include "koord/check/check.h"
 #include "solve/cache/caching_solver.h"
 #include "solve/smtlib/smtlib_solver.h"
 #include "solve/z3/z3_solver.h"
@@ -56,11 +55,8 @@ int StatusOf(const koord::Report& report) {
 
 int Run(const Options& options) {
   Session session;
-  const auto program = Load({options.file, options.spec, true}, session);
-  if (!program) return kRejected;
-  koord::Model model;
-  const bool parsed = !session.diagnostics.has_errors();
-  if (parsed) model = koord::Check(*program, session.diagnostics);
+  const auto loaded = LoadKoord({options.file, options.spec, true}, session);
+  if (!loaded && !session.diagnostics.has_errors()) return kRejected;
   const auto finish_early = [&](int status) {
     if (options.json)
       PrintJson(ProveJson(session, options.file, nullptr, status));
@@ -68,10 +64,11 @@ int Run(const Options& options) {
       PrintDiagnostics(session.sources, session.diagnostics);
     return status;
   };
-  if (session.diagnostics.has_errors()) return finish_early(kRejected);
+  if (!loaded) return finish_early(kRejected);
+  const koord::Model& model = loaded->model;
   if (model.invariants.empty()) {
     session.diagnostics
-        .Report(diag::Kind::kKoordNoInvariant, program->item_spans.back(), "there is nothing to prove")
+        .Report(diag::Kind::kKoordNoInvariant, loaded->program.item_spans.back(), "there is nothing to prove")
         .Help(
             "state what must always hold: `invariant NAME: ...`, here or in the `.spec` file beside the "
             "program");

@@ -13,7 +13,6 @@
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "koord/semantics/story.h"
-#include "koord/syntax/parser.h"
 #include "sim/draw/history.h"
 #include "sim/simulation.h"
 #include "trace/reader.h"
@@ -119,18 +118,10 @@ Verdict ReplayExplored(const std::string& bytes, const nlohmann::json& record, S
     return true;
   });
   if (!read.ok()) return {false, read.error().message};
-  koord::Program program;
-  const auto parse = [&](const char* key) {
-    const std::string text = sim::TextOf(record, key);
-    if (!text.empty())
-      koord::Parse(session.sources, session.sources.Add(key, text), program, session.diagnostics);
-  };
-  parse("program");
-  parse("spec");
-  if (session.diagnostics.has_errors()) return {false, "the program that the trace keeps cannot be used"};
-  const koord::Model model = koord::Check(program, session.diagnostics);
-  if (session.diagnostics.has_errors()) return {false, "the program that the trace keeps cannot be used"};
-  return ReplaySteps(run, model);
+  const auto loaded =
+      LoadKoordTexts("program", sim::TextOf(record, "program"), sim::TextOf(record, "spec"), session);
+  if (!loaded) return {false, "the program that the trace keeps cannot be used"};
+  return ReplaySteps(run, loaded->model);
 }
 
 // A simulation: again from the texts and the seed that it keeps.
@@ -149,18 +140,11 @@ Verdict ReplayTrace(const std::string& bytes, Session& session) {
     return {false, "the record of the run is damaged"};
   options.seed = run["seed"].get<uint64_t>();
   options.duration = run["duration"].get<double>();
-  koord::Program program;
-  koord::Parse(session.sources, session.sources.Add(options.program_name, options.program), program,
-               session.diagnostics);
-  if (!options.spec.empty())
-    koord::Parse(session.sources, session.sources.Add("specification", options.spec), program,
-                 session.diagnostics);
-  if (session.diagnostics.has_errors()) return {false, "the program that the trace keeps cannot be used"};
-  const koord::Model model = koord::Check(program, session.diagnostics);
+  const auto loaded = LoadKoordTexts(options.program_name, options.program, options.spec, session);
+  if (!loaded) return {false, "the program that the trace keeps cannot be used"};
   const diag::FileId file = session.sources.Add("fleet", options.fleet);
   const sim::Fleet fleet = sim::ReadFleet(session.sources, file, session.diagnostics);
-  if (session.diagnostics.has_errors())
-    return {false, "the program or the fleet that the trace keeps cannot be used"};
+  if (session.diagnostics.has_errors()) return {false, "the fleet that the trace keeps cannot be used"};
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / fmt::format("rondo-replay-{}.mcap", ::getpid());
   auto writer = trace::Writer::Open(path.string());
@@ -175,7 +159,7 @@ Verdict ReplayTrace(const std::string& bytes, Session& session) {
       line.Show(fmt::format("[{:.0f} of {:.0f} s]", time, end));
     };
     diag::Diagnostics said;  // what the run violates was said when it was made
-    report = sim::Simulate(model, fleet, options, &again, said);
+    report = sim::Simulate(loaded->model, fleet, options, &again, said);
     const auto done = again.Finish();
     if (!done.ok()) return {false, fmt::format("cannot write `{}`: {}", path.string(), done.error().message)};
   }

@@ -76,7 +76,7 @@ class Run {
   std::optional<std::vector<Word>> ValueOf(const std::string& name, const FleetValue& given,
                                            size_t variable) {
     auto words =
-        koord::semantics::FromJson(model_.types, heap_->heap(), model_.variables[variable].type, given.value);
+        koord::semantics::FromJson(model_.types, team_->heap(), model_.variables[variable].type, given.value);
     if (!words) {
       diagnostics_.Report(
           Kind::kFleetValue, given.span,
@@ -117,7 +117,6 @@ class Run {
       }
     }
     team_ = Team::Make(model_, options, diagnostics_);
-    heap_ = team_.get();
     if (team_ == nullptr || diagnostics_.errors() != before) return false;
     for (const auto& part : team_->unchecked()) {
       report_.unchecked.push_back(part.name);
@@ -609,7 +608,6 @@ class Run {
   Recorder recorder_;
   Functions functions_;
   std::unique_ptr<Team> team_;
-  Team* heap_ = nullptr;
   std::vector<Port> ports_;
   std::vector<std::unique_ptr<Body>> bodies_;
   std::vector<std::mt19937_64> noise_;
