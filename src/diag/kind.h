@@ -136,6 +136,9 @@ enum class Kind : uint8_t {
   kKoordStuck,
   kKoordDeadlock,
   kKoordNeverHappened,
+  // Reachability.
+  kReachRefuted,
+  kReachUnknown,
   // Fleets.
   kFleetSyntax,
   kFleetValue,

@@ -18,5 +18,6 @@ std::span<const KindInfo> KoordTypeKinds();
 std::span<const KindInfo> KoordControlKinds();
 std::span<const KindInfo> KoordProofKinds();
 std::span<const KindInfo> KoordRunKinds();
+std::span<const KindInfo> ReachKinds();
 
 }  // namespace rondo::diag

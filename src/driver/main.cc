@@ -33,6 +33,7 @@ int Main(int argc, char** argv) {
   AddSimulateVerb(app, status);
   AddReplayVerb(app, status);
   AddPlotVerb(app, status);
+  AddReachVerb(app, status);
   AddInferVerb(app, status);
   AddGraphVerb(app, status);
   AddProjectVerb(app, status);

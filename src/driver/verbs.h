@@ -18,6 +18,7 @@ void AddExploreVerb(CLI::App& app, int& status);
 void AddSimulateVerb(CLI::App& app, int& status);
 void AddReplayVerb(CLI::App& app, int& status);
 void AddPlotVerb(CLI::App& app, int& status);
+void AddReachVerb(CLI::App& app, int& status);
 void AddSolveVerb(CLI::App& app, int& status);
 void AddCertifyVerb(CLI::App& app, int& status);
 void AddExplainVerb(CLI::App& app, int& status);

@@ -175,6 +175,7 @@ std::optional<size_t> Calls::Resolve(RobotId robot, const MotionCall& call, cons
   if (!duration) return std::nullopt;
   instance.duration = *duration;
   instance.contract = robot::ContractOf(body, *motion, names, evaluator_);
+  instance.control = robot::ControlOf(body, *motion, names, evaluator_);
   instance.text = TextOf(*motion, call);
   if (evaluator_.diagnostics().errors() > errors) return std::nullopt;
   graph_.instances.push_back(std::move(instance));

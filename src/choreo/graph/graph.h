@@ -31,6 +31,7 @@ struct Instance {
   const MotionDef* motion = nullptr;
   std::vector<robot::Value> args;  ///< by parameter
   robot::Contract contract;
+  std::optional<robot::Control> control;
   Duration duration;
   std::string text;  ///< as it was written first: `Move(1 m)`
 };

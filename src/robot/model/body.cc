@@ -37,9 +37,17 @@ class Filler {
     body_.derivatives.resize(body_.states.size());
     for (const RobotItem& item : type_.items) {
       if (const auto* dynamics = std::get_if<DynamicsDef>(&item)) Dynamics(*dynamics);
+      if (const auto* control = std::get_if<ControlDef>(&item)) {
+        if (body_.control) {
+          e_.diagnostics().Report(Kind::kChoreoDuplicate, control->span,
+                                  fmt::format("`{}` has two controllers", type_.name.text));
+        }
+        body_.control = ReadControl(body_, *control, body_.scope, e_);
+      }
     }
     for (const Variable& v : body_.states) body_.sensed.insert(v.term);
     for (const Variable& v : body_.inputs) body_.sensed.insert(v.term);
+    for (const Variable& v : body_.memory) body_.sensed.insert(v.term);
   }
 
  private:
@@ -84,7 +92,8 @@ class Filler {
         continue;
       }
       Claim(v.name, Quantity(v.term, v.dimension));
-      (input ? body_.inputs : body_.states).push_back(std::move(v));
+      auto& list = input ? body_.inputs : group.keyword.text == "memory" ? body_.memory : body_.states;
+      list.push_back(std::move(v));
     }
   }
 
@@ -177,6 +186,43 @@ bool HasParameter(const RobotDef& type, std::string_view name) {
     }
   }
   return false;
+}
+
+Control ReadControl(const Body& body, const ControlDef& def, const Scope& scope, Evaluator& e) {
+  Control control;
+  if (def.period.valid()) {
+    control.period = e.Measure(def.period, scope, kTime, "a period");
+    if (control.period && e.arena().IsNumber(*control.period) &&
+        !(e.arena().number(*control.period) > expr::Rational(0))) {
+      e.diagnostics().Report(Kind::kRobotRange, e.SpanOf(def.period), "a period is longer than nothing");
+    } else if (control.period && !e.arena().IsNumber(*control.period)) {
+      e.diagnostics().Report(Kind::kRobotType, e.SpanOf(def.period), "a period is a constant");
+    }
+  }
+  for (const Derivative& law : def.laws) {
+    const Variable* variable = nullptr;
+    for (const auto* list : {&body.inputs, &body.memory}) {
+      for (const Variable& v : *list) {
+        if (v.name.text == law.variable.text) variable = &v;
+      }
+    }
+    if (variable == nullptr) {
+      e.diagnostics()
+          .Report(Kind::kChoreoUndeclared, law.variable.span,
+                  fmt::format("`{}` has no input and no memory `{}`", body.type->name.text, law.variable.text))
+          .Help("a controller sets inputs and memory; states follow `dynamics`");
+      continue;
+    }
+    for (const auto& [known, value] : control.laws) {
+      if (known == variable->term)
+        e.diagnostics().Report(Kind::kChoreoDuplicate, law.variable.span,
+                               fmt::format("`{}` is set twice", law.variable.text));
+    }
+    const auto value = e.Measure(law.value, scope, variable->dimension,
+                                 fmt::format("`{}`, in {},", law.variable.text, UnitText(variable->dimension)));
+    if (value) control.laws.emplace_back(variable->term, *value);
+  }
+  return control;
 }
 
 void FillBody(const RobotDef& type, const Arguments& given, TermId clock, Body& body, Evaluator& evaluator) {

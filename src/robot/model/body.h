@@ -17,6 +17,9 @@ using Arguments = std::map<std::string, std::pair<Value, diag::Span>, std::less<
 /// Everything of a body but where it stands.
 void FillBody(const RobotDef& type, const Arguments& given, TermId clock, Body& body, Evaluator& evaluator);
 
+/// The laws of a controller as terms; reports what cannot be set, what is set twice, and wrong units.
+Control ReadControl(const Body& body, const ControlDef& def, const Scope& scope, Evaluator& evaluator);
+
 /// States, inputs, frames and mounts, for others.
 Value SeenFromOutside(const Body& body);
 

@@ -66,6 +66,20 @@ Scope MotionScope(const Body& body, const MotionDef& motion, const std::vector<V
     } else if (p.dimension.text == "point" && value.kind != ValueKind::kPoint) {
       value = e.WrongType(span, value, "a point of the world");
     }
+    // A number outside of the declared values.
+    const auto bound = [&](ExprId limit) -> std::optional<TermId> {
+      if (!limit.valid() || value.kind != ValueKind::kQuantity) return std::nullopt;
+      return e.Measure(limit, scope, value.dimension, "a bound");
+    };
+    const auto least = bound(p.least);
+    const auto most = bound(p.most);
+    Arena& arena = e.arena();
+    if ((least && arena.Le(*least, value.terms[0]) == arena.False()) ||
+        (most && arena.Le(value.terms[0], *most) == arena.False())) {
+      e.diagnostics()
+          .Report(Kind::kRobotRange, span, fmt::format("`{}` is not for this value of `{}`", motion.name.text, p.name.text))
+          .At(p.name.span, "its values are declared here");
+    }
     scope.names.emplace(p.name.text, std::move(value));
   }
   return scope;
@@ -102,6 +116,11 @@ Contract ContractOf(const Body& body, const MotionDef& motion, const Scope& scop
   contract.during = arena.And(during);
   contract.post = arena.And(post);
   return contract;
+}
+
+std::optional<Control> ControlOf(const Body& body, const MotionDef& motion, const Scope& scope, Evaluator& e) {
+  if (motion.controls.empty()) return body.control;
+  return ReadControl(body, motion.controls[0], scope, e);
 }
 
 void CheckRobot(const RobotDef& type, Evaluator& e) {
@@ -150,7 +169,13 @@ void CheckRobot(const RobotDef& type, Evaluator& e) {
                 "`point`");
       }
     }
-    ContractOf(body, *motion, MotionScope(body, *motion, args, spans, e), e);
+    const Scope scope = MotionScope(body, *motion, args, spans, e);
+    ContractOf(body, *motion, scope, e);
+    ControlOf(body, *motion, scope, e);
+    if (motion->controls.size() > 1) {
+      e.diagnostics().Report(Kind::kChoreoDuplicate, motion->controls[1].span,
+                             fmt::format("`{}` has two controllers", motion->name.text));
+    }
   }
 }
 

@@ -19,6 +19,10 @@ const Functions::Entry Functions::kTable[] = {
     {"abs", 1, 1, &Functions::Abs},
     {"min", 2, 2, &Functions::Extreme},
     {"max", 2, 2, &Functions::Extreme},
+    {"clamp", 3, 3, &Functions::Clamp},
+    {"select", 3, 3, &Functions::Select},
+    {"exp", 1, 1, &Functions::Exponential},
+    {"log", 1, 1, &Functions::Exponential},
     {"sin", 1, 1, &Functions::Trigonometric},
     {"cos", 1, 1, &Functions::Trigonometric},
     {"tan", 1, 1, &Functions::Trigonometric},
@@ -175,6 +179,31 @@ Value Functions::Extreme(Arguments& a) {
   v.terms[0] = arena_.Apply(min ? Elementary::kMin : Elementary::kMax, {v.terms[0], a.values[1].terms[0]});
   v.squared.reset();
   return v;
+}
+
+Value Functions::Clamp(Arguments& a) {
+  if (!NeedQuantity(a, 0) || !NeedSame(a, 0, 1) || !NeedSame(a, 0, 2)) return {};
+  Value v = a.values[0];
+  v.terms[0] = arena_.Apply(Elementary::kMin, {arena_.Apply(Elementary::kMax, {v.terms[0], a.values[1].terms[0]}),
+                                               a.values[2].terms[0]});
+  v.squared.reset();
+  return v;
+}
+
+// select(condition, then, otherwise)
+Value Functions::Select(Arguments& a) {
+  if (a.values[0].kind != ValueKind::kBool) return e_.WrongType(SpanOf(a, 0), a.values[0], "a formula");
+  if (!NeedQuantity(a, 1) || !NeedSame(a, 1, 2)) return {};
+  Value v = a.values[1];
+  v.terms[0] = arena_.Ite(a.values[0].terms[0], v.terms[0], a.values[2].terms[0]);
+  v.squared.reset();
+  return v;
+}
+
+Value Functions::Exponential(Arguments& a) {
+  if (!Need(a, 0, {}, "a number")) return {};
+  const bool exp = e_.pool_[a.call.args[0]].text == "exp";
+  return Quantity(arena_.Apply(exp ? Elementary::kExp : Elementary::kLog, {a.values[0].terms[0]}), {});
 }
 
 Value Functions::Trigonometric(Arguments& a) {

@@ -45,6 +45,9 @@ class Functions {
   Value Sqrt(Arguments& a);
   Value Abs(Arguments& a);
   Value Extreme(Arguments& a);
+  Value Clamp(Arguments& a);
+  Value Select(Arguments& a);
+  Value Exponential(Arguments& a);
   Value Trigonometric(Arguments& a);
   Value InverseTrigonometric(Arguments& a);
   Value Atan2(Arguments& a);

@@ -18,6 +18,12 @@ struct Variable {
   std::optional<TermId> least, most;
 };
 
+/// How inputs and memory are set: once in each period, all at once, or without a period at all times.
+struct Control {
+  std::optional<TermId> period;
+  std::vector<std::pair<TermId, TermId>> laws;  ///< (input or memory, value)
+};
+
 /// A robot in a world: its variables, frames and shapes as terms. The variable `x` of the robot `cart` is the
 /// real constant `cart.x`.
 struct Body {
@@ -27,7 +33,9 @@ struct Body {
   Pose self;                     ///< where it was put, in the world
   std::vector<Variable> states;
   std::vector<Variable> inputs;                    ///< those that nothing in the world determines
+  std::vector<Variable> memory;                    ///< of the controller
   std::vector<std::optional<TermId>> derivatives;  ///< of the states, if its dynamics are known
+  std::optional<Control> control;                  ///< for motions without one of their own
   std::optional<Shape> body;                       ///< the space it occupies; nothing is known without it
   std::optional<Shape> hull;                       ///< coarser
   std::map<std::string, Pose, std::less<>> mounts;
@@ -86,5 +94,8 @@ Scope MotionScope(const Body& body, const MotionDef& motion, const std::vector<V
 
 /// The contract under such names.
 Contract ContractOf(const Body& body, const MotionDef& motion, const Scope& scope, Evaluator& evaluator);
+
+/// The controller of a motion: its own, or that of the robot; nothing if neither has one.
+std::optional<Control> ControlOf(const Body& body, const MotionDef& motion, const Scope& scope, Evaluator& evaluator);
 
 }  // namespace rondo::robot

@@ -16,11 +16,12 @@ struct Name {
   diag::Span span;
 };
 
-/// `T : time = 5 s`: a parameter of a robot or motion. Dimension and default may be missing.
+/// `T : time = 5 s` or `d : length in [0, 1 m]`: a parameter of a robot or motion. Everything but the name may be missing.
 struct Param {
   Name name;
   Name dimension;  ///< empty if it is not stated
   ExprId value;
+  ExprId least, most;  ///< of a motion: what values it may have
 };
 
 struct ParamGroup {
@@ -28,7 +29,7 @@ struct ParamGroup {
   std::vector<Param> params;
 };
 
-/// `state x, y : length in [-10 m, 10 m]`, and the same for `input` and `output`.
+/// `state x, y : length in [-10 m, 10 m]`, and the same for `input`, `memory` and `output`.
 struct StateGroup {
   diag::Span span;
   Name keyword;
@@ -61,6 +62,13 @@ struct DynamicsDef {
   std::vector<Derivative> derivatives;
 };
 
+/// `control every 20 ms { vx = ...; sum = ... }`: how inputs and memory are set; without a period, at all times.
+struct ControlDef {
+  diag::Span span;
+  ExprId period;  ///< may be missing
+  std::vector<Derivative> laws;
+};
+
 /// One line of a contract: `pre`, `assume`, `during`, `post`, `footprint`, `region`, `guarantee` with an
 /// expression, or `modifies` with names.
 struct Clause {
@@ -77,9 +85,10 @@ struct MotionDef {
   bool interruptible = false;
   ExprId least, most;  ///< of the duration
   std::vector<Clause> clauses;
+  std::vector<ControlDef> controls;  ///< its own controller: one at most
 };
 
-using RobotItem = std::variant<ParamGroup, StateGroup, FrameDef, ShapeDef, DynamicsDef, MotionDef>;
+using RobotItem = std::variant<ParamGroup, StateGroup, FrameDef, ShapeDef, DynamicsDef, ControlDef, MotionDef>;
 
 struct RobotDef {
   diag::Span span;

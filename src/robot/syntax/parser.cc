@@ -71,7 +71,7 @@ void Parser::ParseRobotItem(RobotDef& robot) {
     } while (!failed() && Accept(","));
     group.span = keyword.span.To(PreviousSpan());
     robot.items.emplace_back(std::move(group));
-  } else if (Accept("state") || Accept("input")) {
+  } else if (Accept("state") || Accept("input") || Accept("memory")) {
     robot.items.emplace_back(ParseState(keyword));
   } else if (Accept("frame") || Accept("mount")) {
     ParseFrame(robot, keyword);
@@ -79,16 +79,20 @@ void Parser::ParseRobotItem(RobotDef& robot) {
     robot.items.emplace_back(ShapeDef{keyword, ParseExpr()});
   } else if (Accept("dynamics")) {
     ParseDynamics(robot, keyword.span);
+  } else if (Accept("control")) {
+    if (auto control = ParseControl(keyword.span)) robot.items.emplace_back(std::move(*control));
   } else if (Accept("motion")) {
     ParseMotion(robot, keyword.span);
   } else {
-    Unexpected("`param`, `state`, `input`, `frame`, `mount`, `body`, `hull`, `dynamics` or `motion`");
+    Unexpected(
+        "`param`, `state`, `input`, `memory`, `frame`, `mount`, `body`, `hull`, `dynamics`, `control` or `motion`");
   }
 }
 
 Param Parser::ParseParam() {
-  Param param{ParseName("a parameter"), {}, {}};
+  Param param{ParseName("a parameter"), {}, {}, {}, {}};
   if (Accept(":")) param.dimension = ParseName("a dimension such as `length`, `angle` or `time`");
+  if (!failed() && Accept("in")) ParseRange(param.least, param.most);
   if (!failed() && Accept("=")) param.value = ParseExpr();
   return param;
 }
@@ -157,6 +161,24 @@ void Parser::ParseDynamics(RobotDef& robot, Span start) {
   robot.items.emplace_back(std::move(dynamics));
 }
 
+std::optional<ControlDef> Parser::ParseControl(Span start) {
+  ControlDef control;
+  if (Accept("every")) control.period = ParseExpr();
+  if (failed() || !Expect("{", "`control` or its period")) return std::nullopt;
+  while (!At("}") && !AtKind(TokenKind::kEnd)) {
+    Derivative law;
+    law.variable = ParseName("an input or a memory");
+    if (!Expect("=", "what is set")) return std::nullopt;
+    law.value = ParseExpr();
+    if (failed()) return std::nullopt;
+    control.laws.push_back(std::move(law));
+    Accept(";");
+  }
+  Expect("}", "the last law of a controller");
+  control.span = start.To(PreviousSpan());
+  return control;
+}
+
 Clause Parser::ParseClause() {
   Clause clause{{std::string(Peek().text), Peek().span}, {}, {}};
   Take();
@@ -178,8 +200,16 @@ void Parser::ParseMotion(RobotDef& robot, Span start) {
   motion.span = start.To(PreviousSpan());
   if (!Expect("{", "the duration of a motion")) return;
   while (!At("}") && !AtKind(TokenKind::kEnd)) {
+    if (At("control")) {
+      const Span control = Peek().span;
+      Take();
+      if (auto own = ParseControl(control)) motion.controls.push_back(std::move(*own));
+      if (failed()) return;
+      Accept(";");
+      continue;
+    }
     if (!AtKind(TokenKind::kName) || !Contains(kClauses, Peek().text)) {
-      Unexpected("`modifies`, `pre`, `assume`, `during`, `post` or `footprint`");
+      Unexpected("`modifies`, `pre`, `assume`, `during`, `post`, `footprint` or `control`");
       return;
     }
     if (At("modifies")) {

@@ -35,6 +35,7 @@ class Parser : public lang::ExprParser {
   StateGroup ParseState(Name keyword);
   void ParseFrame(RobotDef& robot, Name keyword);
   void ParseDynamics(RobotDef& robot, diag::Span start);
+  std::optional<ControlDef> ParseControl(diag::Span start);
   void ParseMotion(RobotDef& robot, diag::Span start);
   void ParseComponent(WorldDef& world);
   void ParseObstacle(WorldDef& world);

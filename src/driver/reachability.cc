@@ -1,0 +1,170 @@
+#include "driver/reachability.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "driver/exit_status.h"
+
+namespace rondo::driver {
+
+using diag::Kind;
+
+namespace {
+
+struct Scale {
+  double size;
+  std::string text;
+};
+
+std::string StateTable(const ContractResult& r, const std::vector<double>& state) {
+  std::string text;
+  for (size_t i = 0; i < state.size(); ++i) {
+    if (r.made.names[i] == "clock") continue;
+    text += fmt::format("{}{} = {:.6g}", text.empty() ? "" : ", ", r.made.names[i], state[i]);
+  }
+  return text;
+}
+
+const reach::Problem& ProblemOf(const ContractResult& r) { return r.made.problem; }
+
+}  // namespace
+
+std::vector<ContractResult> ContractsOf(Motion& motion, Session& session) {
+  std::vector<ContractResult> all;
+  const auto add = [&](const robot::World& world, const robot::Body& body, const robot::MotionInstance& instance) {
+    ContractResult result;
+    result.span = instance.motion->name.span;
+    auto problem = robot::ProblemOf(world, body, instance, motion.arena);
+    result.made.problem.name = fmt::format("{}: {}", body.name.text, instance.text);
+    if (problem.ok()) {
+      result.made = std::move(problem).value();
+    } else {
+      result.impossible = problem.error().message;
+    }
+    all.push_back(std::move(result));
+  };
+  for (const choreo::Graph& graph : motion.graphs) {
+    for (const choreo::Instance& i : graph.instances) {
+      robot::MotionInstance instance;
+      instance.text = i.text;
+      instance.motion = i.motion;
+      instance.contract = i.contract;
+      instance.control = i.control;
+      instance.duration = i.duration.most;
+      add(*graph.world, graph.BodyOf(i.robot), instance);
+    }
+  }
+  if (!motion.graphs.empty()) return all;
+  for (const choreo::Item& item : motion.module.items) {
+    const auto* type = std::get_if<robot::RobotDef>(&item);
+    if (type == nullptr) continue;
+    auto world = std::make_shared<robot::World>();
+    for (const robot::MotionInstance& i : robot::MotionsOf(*type, motion.declarations->evaluator(), *world))
+      add(*world, world->bodies[0], i);
+  }
+  (void)session;
+  return all;
+}
+
+std::string_view VerdictOf(const ContractResult& r) {
+  if (!r.impossible.empty()) return "unknown";
+  if (!r.outcome) return "not begun";
+  if (std::holds_alternative<reach::Proved>(*r.outcome)) return "proved";
+  if (std::holds_alternative<reach::Refuted>(*r.outcome)) return "refuted";
+  return "unknown";
+}
+
+int StatusOf(const ContractResult& r) {
+  const std::string_view verdict = VerdictOf(r);
+  return verdict == "proved" ? kEstablished : verdict == "refuted" ? kRejected : kUndecided;
+}
+
+void ReportContract(const ContractResult& r, diag::Diagnostics& diagnostics) {
+  const std::string& name = ProblemOf(r).name;
+  if (!r.impossible.empty()) {
+    diagnostics.Report(Kind::kReachUnknown, r.span, fmt::format("the contract of `{}` cannot be analysed", name))
+        .Note(r.impossible);
+    return;
+  }
+  if (!r.outcome || r.same_as) return;
+  if (const auto* refuted = std::get_if<reach::Refuted>(&*r.outcome)) {
+    const reach::Violation& v = refuted->violation;
+    const std::string& claim = ProblemOf(r).claims[v.claim].name;
+    auto& report = diagnostics.Report(
+        Kind::kReachRefuted, r.span,
+        fmt::format("`{}` breaks its contract: `{}` fails after {:.4g} s", name, claim, v.time));
+    report.Note(fmt::format("start: {}", StateTable(r, refuted->course.start)));
+    report.Note(fmt::format("there:  {}", StateTable(r, v.state)));
+    report.Note(fmt::format("it fails by {:.3g}", v.miss));
+    report.Note(refuted->certain ? "the exact solution from this start was enclosed: it does break the contract"
+                                 : "a simulation, not enclosed: rounding could matter");
+    return;
+  }
+  if (const auto* open = std::get_if<reach::Undecided>(&*r.outcome)) {
+    auto& report =
+        diagnostics.Report(Kind::kReachUnknown, r.span, fmt::format("the contract of `{}` is neither proved nor refuted", name));
+    report.Note(open->reason);
+    if (open->closest) {
+      report.Note(fmt::format("closest approach of {} sampled trajectories: `{}` held by {:.3g} after {:.4g} s", "the",
+                              ProblemOf(r).claims[open->closest->claim].name, -open->closest->miss, open->closest->time));
+    }
+  }
+}
+
+std::string ContractTable(const std::vector<ContractResult>& results) {
+  std::string text = fmt::format("{:<9} {:>9} {:>6} {:>7}  {}\n", "verdict", "time", "parts", "steps", "contract");
+  for (const ContractResult& r : results) {
+    std::string parts;
+    std::string steps;
+    if (r.outcome && !r.same_as) {
+      if (const auto* proved = std::get_if<reach::Proved>(&*r.outcome)) {
+        parts = fmt::format("{}", proved->leaves.size());
+        steps = fmt::format("{}", proved->steps);
+      }
+    }
+    const std::string time = r.same_as ? "as above" : fmt::format("{:.3f} s", r.seconds);
+    text += fmt::format("{:<9} {:>9} {:>6} {:>7}  {}\n", VerdictOf(r), time, parts, steps, ProblemOf(r).name);
+  }
+  return text;
+}
+
+nlohmann::json ToJson(const ContractResult& r) {
+  nlohmann::json out{{"contract", ProblemOf(r).name}, {"verdict", VerdictOf(r)}, {"seconds", r.seconds}};
+  if (!r.impossible.empty()) out["reason"] = r.impossible;
+  if (!r.made.assumed.empty()) out["assumed"] = r.made.assumed;
+  if (!r.outcome) return out;
+  if (const auto* proved = std::get_if<reach::Proved>(&*r.outcome)) {
+    out["parts"] = proved->leaves.size();
+    out["steps"] = proved->steps;
+    nlohmann::json final = nlohmann::json::object();
+    nlohmann::json extent = nlohmann::json::object();
+    for (size_t i = 0; i < r.made.names.size(); ++i) {
+      interval::Interval end = interval::Interval::Empty();
+      interval::Interval all = end;
+      for (const reach::Leaf& leaf : proved->leaves) {
+        end = interval::Hull(end, leaf.final[i]);
+        for (const reach::TubeSegment& s : leaf.tube) all = interval::Hull(all, s.during[i]);
+      }
+      final[r.made.names[i]] = {end.lo, end.hi};
+      extent[r.made.names[i]] = {all.lo, all.hi};
+    }
+    out["final"] = final;
+    out["range"] = extent;
+  } else if (const auto* refuted = std::get_if<reach::Refuted>(&*r.outcome)) {
+    out["claim"] = ProblemOf(r).claims[refuted->violation.claim].name;
+    out["time"] = refuted->violation.time;
+    out["fails_by"] = refuted->violation.miss;
+    out["start"] = refuted->course.start;
+    out["state"] = refuted->violation.state;
+    out["enclosed"] = refuted->certain;
+  } else {
+    const auto& open = std::get<reach::Undecided>(*r.outcome);
+    out["reason"] = open.reason;
+    if (open.closest) out["closest"] = {{"held_by", -open.closest->miss}, {"time", open.closest->time}};
+  }
+  return out;
+}
+
+}  // namespace rondo::driver

@@ -1,0 +1,188 @@
+#include "reach/system/bounds.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rondo::reach {
+
+using expr::Op;
+using interval::operator+;
+using interval::operator-;
+using interval::operator*;
+using interval::operator/;
+
+namespace {
+
+// term <= 0 with a term of the form factor * variable + constant bounds the variable.
+void BoundByNumber(const expr::Arena& arena, const Program& p, TermId term, interval::Box& box) {
+  Rational constant(0);
+  TermId rest = term;
+  if (arena.op(term) == Op::kAdd) {
+    const auto args = arena.args(term);
+    if (args.size() != 2) return;
+    const size_t number = arena.IsNumber(args[0]) ? 0 : 1;
+    if (!arena.IsNumber(args[number])) return;
+    constant = arena.number(args[number]);
+    rest = args[1 - number];
+  }
+  Rational factor(1);
+  if (arena.op(rest) == Op::kMul && arena.args(rest).size() == 2 && arena.IsNumber(arena.arg(rest, 0))) {
+    factor = arena.number(arena.arg(rest, 0));
+    rest = arena.arg(rest, 1);
+  }
+  const auto it = std::find(p.variables.begin(), p.variables.end(), rest);
+  if (it == p.variables.end()) return;
+  const Interval bound = Enclose((Rational(0) - constant) / factor);
+  Interval& side = box[static_cast<size_t>(it - p.variables.begin())];
+  if (factor > Rational(0)) {
+    side.hi = std::min(side.hi, bound.hi);
+  } else {
+    side.lo = std::max(side.lo, bound.lo);
+  }
+}
+
+class Shaver {
+ public:
+  Shaver(const Program& p, const Formula& f, interval::Box& box) : p_(p), f_(f), box_(box) {}
+
+  void Run() {
+    for (int round = 0; round < 3; ++round) {
+      for (size_t i = 0; i < box_.size(); ++i) {
+        if (box_[i].IsPoint()) continue;
+        Unbounded(i);
+        for (int part = 0; part < 16 && Cut(i, true); ++part) {
+        }
+        for (int part = 0; part < 16 && Cut(i, false); ++part) {
+        }
+        Fine(i, true);
+        Fine(i, false);
+      }
+    }
+  }
+
+ private:
+  bool Fails(size_t i, Interval slab) {
+    const Interval side = box_[i];
+    box_[i] = slab;
+    const bool fails = CheckBox(p_, f_, box_) == Truth::kFalse;
+    box_[i] = side;
+    return fails;
+  }
+  void Unbounded(size_t i) {
+    for (int e = 0; e < 60 && std::isinf(box_[i].hi); ++e) {
+      const double from = std::max(std::ldexp(1.0, e), box_[i].lo);
+      if (Fails(i, {from, box_[i].hi})) box_[i].hi = from;
+    }
+    for (int e = 0; e < 60 && std::isinf(box_[i].lo); ++e) {
+      const double to = std::min(-std::ldexp(1.0, e), box_[i].hi);
+      if (Fails(i, {box_[i].lo, to})) box_[i].lo = to;
+    }
+  }
+  // Cuts off an eighth, as long as the formula fails there.
+  bool Cut(size_t i, bool upper) {
+    Interval& side = box_[i];
+    if (!std::isfinite(side.lo) || !std::isfinite(side.hi)) return false;
+    const double w = side.Width() / 8;
+    const Interval slab = upper ? Interval{side.hi - w, side.hi} : Interval{side.lo, side.lo + w};
+    if (!Fails(i, slab)) return false;
+    (upper ? side.hi : side.lo) = upper ? slab.lo : slab.hi;
+    return true;
+  }
+  // The outermost slab that fails, by bisection of its thickness.
+  void Fine(size_t i, bool upper) {
+    Interval& side = box_[i];
+    if (!std::isfinite(side.lo) || !std::isfinite(side.hi)) return;
+    double w = side.Width() / 8;
+    for (int k = 0; k < 40 && w > 1e-14 * std::max(std::fabs(side.lo), std::fabs(side.hi)); ++k, w /= 2) {
+      const Interval slab = upper ? Interval{side.hi - w, side.hi} : Interval{side.lo, side.lo + w};
+      if (slab.lo < slab.hi && slab.lo >= side.lo && slab.hi <= side.hi && Fails(i, slab))
+        (upper ? side.hi : side.lo) = upper ? slab.lo : slab.hi;
+    }
+  }
+
+  const Program& p_;
+  const Formula& f_;
+  interval::Box& box_;
+};
+
+}  // namespace
+
+std::vector<Interval> ValuesOn(const Program& p, const interval::Box& box) {
+  std::vector<Interval> v(p.code.size());
+  const auto constant = [](const LinearPart& part) {
+    return Interval::Point(part.factor) + Interval{-part.error, part.error};
+  };
+  for (size_t n = 0; n < p.code.size(); ++n) {
+    const Code& c = p.code[n];
+    switch (c.op) {
+      case CodeOp::kVariable:
+        v[n] = box[c.a];
+        break;
+      case CodeOp::kLinear:
+        v[n] = constant(p.constants[n]);
+        for (uint32_t i = c.a; i < c.a + c.b; ++i) v[n] = v[n] + constant(p.parts[i]) * v[p.parts[i].node];
+        break;
+      case CodeOp::kProduct:
+        v[n] = c.a == c.b ? interval::Sqr(v[c.a]) : v[c.a] * v[c.b];
+        break;
+      case CodeOp::kReciprocal:
+        v[n] = Interval::Point(1) / v[c.a];
+        break;
+      case CodeOp::kRoot:
+        v[n] = interval::Sqrt(v[c.a]);
+        break;
+      case CodeOp::kSine:
+        v[n] = interval::Sin(v[c.a]);
+        break;
+      case CodeOp::kCosine:
+        v[n] = interval::Cos(v[c.a]);
+        break;
+      case CodeOp::kExp:
+        v[n] = interval::Exp(v[c.a]);
+        break;
+      case CodeOp::kLog:
+        v[n] = interval::Log(v[c.a]);
+        break;
+      case CodeOp::kAtan:
+        v[n] = interval::Atan(v[c.a]);
+        break;
+      case CodeOp::kAtan2:
+        v[n] = interval::Atan2(v[c.a], v[c.b]);
+        break;
+      case CodeOp::kAbs:
+        v[n] = interval::Abs(v[c.a]);
+        break;
+      case CodeOp::kChoose:
+        v[n] = v[c.a].hi <= 0 ? v[c.b] : v[c.a].lo > 0 ? v[c.c] : interval::Hull(v[c.b], v[c.c]);
+        break;
+    }
+    if (std::isnan(v[n].lo) || std::isnan(v[n].hi)) v[n] = {};
+  }
+  return v;
+}
+
+Truth CheckBox(const Program& terms, const Formula& formula, const interval::Box& box) {
+  const std::vector<Interval> values = ValuesOn(terms, box);
+  return formula.Check([&](size_t atom) { return values[terms.outputs[atom]]; });
+}
+
+void Contract(const expr::Arena& arena, const Program& terms, const Formula& formula, interval::Box& box) {
+  // Comparisons that must hold, one by one.
+  std::vector<size_t> open{formula.root};
+  while (!open.empty()) {
+    const Formula::Node& node = formula.nodes[open.back()];
+    open.pop_back();
+    if (node.kind == Formula::Kind::kAnd) open.insert(open.end(), node.parts.begin(), node.parts.end());
+    if (node.kind == Formula::Kind::kAtom) BoundByNumber(arena, terms, formula.terms[node.atom], box);
+  }
+  for (const Interval& side : box) {
+    if (side.IsEmpty()) return;
+  }
+  if (CheckBox(terms, formula, box) == Truth::kFalse) {
+    box[0] = Interval::Empty();
+    return;
+  }
+  Shaver(terms, formula, box).Run();
+}
+
+}  // namespace rondo::reach

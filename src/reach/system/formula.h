@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "reach/system/program.h"
+
+namespace rondo::reach {
+
+enum class Truth : uint8_t { kFalse, kOpen, kTrue };
+
+/// A formula about reals as comparisons of terms with zero, below conjunctions and disjunctions.
+struct Formula {
+  enum class Kind : uint8_t { kAtom, kAnd, kOr };
+  struct Node {
+    Kind kind;
+    size_t atom = 0;      ///< of kAtom: index into `terms`
+    bool strict = false;  ///< of kAtom: term < 0, else term <= 0
+    std::vector<size_t> parts;
+  };
+  std::vector<TermId> terms;
+  std::vector<Node> nodes;
+  size_t root = 0;
+
+  /// What is known of the formula where the terms lie in these intervals.
+  Truth Check(const std::function<Interval(size_t)>& range) const;
+  /// By how much the formula fails, at most, where the terms have these values: 0 or less if it holds. Strict and
+  /// non-strict comparisons are not told apart.
+  double Miss(const std::function<double(size_t)>& value) const;
+};
+
+/// Negations are pushed inwards; equalities are two comparisons; |a| <= b and the like are taken apart.
+///
+/// @error names what is no comparison of reals.
+base::Result<Formula> Normalise(expr::Arena& arena, TermId formula);
+
+}  // namespace rondo::reach

@@ -1,0 +1,184 @@
+#include "reach/system/numeric.h"
+
+#include <algorithm>
+#include <boost/numeric/odeint.hpp>
+#include <cmath>
+
+namespace rondo::reach {
+
+namespace odeint = boost::numeric::odeint;
+
+void Evaluator::operator()(std::span<const double> variables, std::span<double> outputs) {
+  const Program& p = program_;
+  for (size_t n = 0; n < p.code.size(); ++n) {
+    const Code& c = p.code[n];
+    double& out = values_[n];
+    switch (c.op) {
+      case CodeOp::kVariable:
+        out = variables[c.a];
+        break;
+      case CodeOp::kLinear:
+        out = p.constants[n].factor;
+        for (uint32_t i = c.a; i < c.a + c.b; ++i) out += p.parts[i].factor * values_[p.parts[i].node];
+        break;
+      case CodeOp::kProduct:
+        out = values_[c.a] * values_[c.b];
+        break;
+      case CodeOp::kReciprocal:
+        out = 1 / values_[c.a];
+        break;
+      case CodeOp::kRoot:
+        out = std::sqrt(values_[c.a]);
+        break;
+      case CodeOp::kSine:
+        out = std::sin(values_[c.a]);
+        break;
+      case CodeOp::kCosine:
+        out = std::cos(values_[c.a]);
+        break;
+      case CodeOp::kExp:
+        out = std::exp(values_[c.a]);
+        break;
+      case CodeOp::kLog:
+        out = std::log(values_[c.a]);
+        break;
+      case CodeOp::kAtan:
+        out = std::atan(values_[c.a]);
+        break;
+      case CodeOp::kAtan2:
+        out = std::atan2(values_[c.a], values_[c.b]);
+        break;
+      case CodeOp::kAbs:
+        out = std::fabs(values_[c.a]);
+        break;
+      case CodeOp::kChoose:
+        out = values_[c.a] <= 0 ? values_[c.b] : values_[c.c];
+        break;
+    }
+  }
+  for (size_t i = 0; i < outputs.size(); ++i) outputs[i] = values_[p.outputs[i]];
+}
+
+base::Result<Trajectories> Trajectories::Of(const Problem& problem) {
+  Trajectories t;
+  t.problem_ = &problem;
+  std::vector<TermId> variables = problem.states;
+  for (const Input& i : problem.inputs) variables.push_back(i.term);
+  auto rates = Compile(*problem.arena, variables, problem.rates);
+  if (!rates.ok()) return rates.error();
+  t.rates_ = std::move(rates).value();
+  if (problem.controller) {
+    std::vector<TermId> updates = problem.states;
+    for (size_t i = 0; i < updates.size(); ++i) {
+      if (problem.controller->updates[i]) updates[i] = *problem.controller->updates[i];
+    }
+    auto program = Compile(*problem.arena, variables, updates);
+    if (!program.ok()) return program.error();
+    t.updates_ = std::move(program).value();
+  }
+  const auto compile = [&](TermId term) -> base::Result<Compiled> {
+    auto formula = Normalise(*problem.arena, term);
+    if (!formula.ok()) return formula.error();
+    auto program = Compile(*problem.arena, problem.states, formula.value().terms);
+    if (!program.ok()) return program.error();
+    return Compiled{std::move(formula).value(), std::move(program).value()};
+  };
+  for (const Claim& c : problem.claims) {
+    auto compiled = compile(c.formula);
+    if (!compiled.ok()) return compiled.error();
+    t.claims_.push_back(std::move(compiled).value());
+  }
+  auto assumed = compile(problem.assume);
+  if (!assumed.ok()) return assumed.error();
+  t.assumed_.push_back(std::move(assumed).value());
+  return t;
+}
+
+double Trajectories::MissOf(const Compiled& compiled, std::span<const double> state) {
+  Evaluator evaluate(compiled.program);
+  std::vector<double> values(compiled.program.outputs.size());
+  evaluate(state, values);
+  return compiled.formula.Miss([&](size_t atom) { return std::isnan(values[atom]) ? 1e300 : values[atom]; });
+}
+
+double Trajectories::Miss(size_t c, std::span<const double> state) { return MissOf(claims_[c], state); }
+double Trajectories::MissAssumed(std::span<const double> state) { return MissOf(assumed_[0], state); }
+
+bool Trajectories::Run(const Course& course, double resolution,
+                       const std::function<bool(double, std::span<const double>)>& visit, double tolerance) {
+  const size_t n = problem_->states.size();
+  const size_t inputs = problem_->inputs.size();
+  const double horizon = problem_->horizon.ToDouble();
+  std::vector<double> x = course.start;
+  std::vector<double> all(n + inputs);
+  Evaluator rate(rates_), update(updates_);
+  const auto set_inputs = [&](double t) {
+    for (size_t i = 0; i < inputs; ++i) {
+      const auto slot = static_cast<size_t>(std::max(0.0, t / course.input_period + 1e-9));
+      all[n + i] = course.inputs.empty() ? problem_->inputs[i].bounds.Middle()
+                                         : course.inputs[std::min(slot, course.inputs.size() - 1)][i];
+    }
+  };
+  const auto system = [&](const std::vector<double>& state, std::vector<double>& derivative, double) {
+    std::copy(state.begin(), state.end(), all.begin());
+    rate(all, derivative);
+  };
+  const double period = problem_->controller ? problem_->controller->period.ToDouble() : horizon;
+  double t = 0;
+  if (!visit(0, x)) return true;
+  for (size_t sample = 0; t < horizon; ++sample) {
+    set_inputs(t);
+    if (problem_->controller) {
+      std::copy(x.begin(), x.end(), all.begin());
+      std::vector<double> next(n);
+      update(all, next);
+      x = next;
+      if (!visit(t, x)) return true;
+    }
+    const double end = std::min(horizon, period * static_cast<double>(sample + 1));
+    while (t < end - 1e-12) {
+      double next = std::min(end, t + resolution);
+      if (inputs > 0 && !course.inputs.empty())
+        next = std::min(next, course.input_period * (std::floor(t / course.input_period + 1e-9) + 1));
+      set_inputs(t);
+      auto stepper = odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_fehlberg78<std::vector<double>>());
+      double at = t;
+      double dt = next - t;
+      int tries = 0;
+      while (at < next) {
+        dt = std::min(dt, next - at);
+        const bool good = stepper.try_step(system, x, at, dt) == odeint::success;
+        if (++tries > 20000 || (!good && dt < 1e-13)) return false;
+        if (next - at < 1e-14) break;
+      }
+      for (const double v : x) {
+        if (!std::isfinite(v)) return false;
+      }
+      t = next;
+      if (!visit(t, x)) return true;
+    }
+    t = end;
+  }
+  return true;
+}
+
+Violation Trajectories::Worst(const Course& course, double resolution, double margin) {
+  Violation worst;
+  worst.miss = -1e300;
+  const double slack = 1e-9;
+  (void)Run(
+      course, resolution,
+      [&](double t, std::span<const double> x) {
+        for (size_t c = 0; c < claims_.size(); ++c) {
+          const Claim& claim = problem_->claims[c];
+          if (t < claim.from.ToDouble() - slack || t > claim.to.ToDouble() + slack) continue;
+          const double miss = Miss(c, x);
+          if (miss > worst.miss) worst = {c, t, miss, {x.begin(), x.end()}};
+        }
+        return worst.miss <= margin;
+      },
+      1e-10);
+  return worst;
+}
+
+}  // namespace rondo::reach

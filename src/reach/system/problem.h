@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reach/system/program.h"
+
+namespace rondo::reach {
+
+/// Something that happens at the instants 0, period, 2 period, ...: the states take new values, all at once, that are
+/// computed from the old ones. Between these instants they follow their rates.
+struct Controller {
+  Rational period;
+  /// By state; a state without a value keeps its own.
+  std::vector<std::optional<TermId>> updates;
+};
+
+/// An input that changes at any time, in any way (measurably), within its bounds. A controller reads the value that
+/// it happens to have at that instant.
+struct Input {
+  TermId term;
+  Interval bounds;
+};
+
+/// What must hold at every instant of [from, to].
+struct Claim {
+  std::string name;
+  TermId formula;
+  Rational from, to;
+};
+
+/// A controlled system, where it may start, and what must hold along every course that it can take.
+///
+/// Times are in seconds. `initial` encloses what `assume` allows; the claims must hold for the starts that satisfy
+/// both.
+struct Problem {
+  std::string name;
+  expr::Arena* arena = nullptr;
+  std::vector<TermId> states;
+  std::vector<TermId> rates;  ///< x' by state
+  std::vector<Input> inputs;
+  std::optional<Controller> controller;
+  interval::Box initial;
+  TermId assume;
+  Rational horizon;
+  std::vector<Claim> claims;
+};
+
+}  // namespace rondo::reach

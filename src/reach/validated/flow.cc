@@ -1,0 +1,142 @@
+#include "reach/validated/flow.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reach/validated/bound.h"
+
+namespace rondo::reach {
+
+using interval::operator+;
+
+namespace {
+
+FlowOptions Chosen(FlowOptions options, size_t symbols) {
+  if (options.order == 0) options.order = symbols == 0 ? 20 : 8;
+  return options;
+}
+
+}  // namespace
+
+Flow::Flow(const Dynamics& dynamics, std::shared_ptr<Monomials> monomials, FlowOptions options, double horizon)
+    : dynamics_(dynamics),
+      options_(Chosen(options, monomials->symbols())),
+      horizon_(horizon),
+      stepper_(dynamics, std::move(monomials), options_.order,
+               options.generators_per_state * static_cast<Eigen::Index>(dynamics.states)),
+      h_(options.first_step) {}
+
+void Flow::Start(FlowSet set, double time) {
+  set_ = std::move(set);
+  time_ = begin_ = time;
+  const size_t least = stepper_.monomials().symbols() == 0 ? 0 : options_.least_degree;
+  if (set_.degree < least) {
+    const_cast<Monomials&>(stepper_.monomials()).Extend(least);
+    set_.Raise(stepper_.monomials(), least);
+  }
+}
+
+size_t Flow::MostDegree() const {
+  const size_t m = stepper_.monomials().symbols();
+  if (m == 0) return 0;
+  size_t degree = 1;
+  double count = static_cast<double>(m) + 1;
+  while (degree < options_.most_degree) {
+    count = count * static_cast<double>(m + degree + 1) / static_cast<double>(degree + 1);
+    if (count > static_cast<double>(options_.most_monomials)) break;
+    ++degree;
+  }
+  return degree;
+}
+
+bool Flow::Step(double until) {
+  const double left = until - time_;
+  double h = std::min({h_, options_.most_step, left});
+  // No crumbs at the end.
+  if (h < left && left < 1.5 * h) h = left * 0.5;
+  const size_t n = set_.dimension;
+  while (true) {
+    if (!stepper_.Advance(set_, h, std::min(options_.least_step, left), options_.order)) return false;
+    h = stepper_.h();
+    stepper_.Finish(set_, next_);
+    // How the errors of the step compare with what it may add.
+    double series = 0;
+    double degree = 0;
+    double linear = 0;
+    largest_ = 0;
+    for (size_t i = 0; i < n; ++i)
+      largest_ = std::fmax(largest_, std::fmax(std::fabs(stepper_.during()[i].lo), std::fabs(stepper_.during()[i].hi)));
+    for (size_t i = 0; i < n; ++i) {
+      const Interval start = RangeOf(stepper_.monomials(), set_.Polynomial(i));
+      const double radius = start.Width() * 0.5;
+      const double magnitude = std::fmax(std::fabs(start.lo), std::fabs(start.hi)) + 1e-6 * largest_;
+      const double share = h / horizon_;
+      const double least = std::fmax(share * options_.floor, 4e-16) * magnitude + 0x1p-900;
+      series = std::fmax(series, stepper_.SeriesError(i) / (share * options_.series_tolerance * radius + least));
+      linear = std::fmax(linear, stepper_.LinearError(i) / (share * options_.linear_tolerance * radius + least));
+      // Rounding does not fall with the degree.
+      degree = std::fmax(degree, stepper_.DegreeError(i) /
+                                     (share * options_.degree_tolerance * radius + least + 1e-14 * largest_));
+    }
+    if (!(series < 1e300)) return false;
+    double factor =
+        std::clamp(0.9 * std::pow(std::fmax(series, 1e-12), -1.0 / static_cast<double>(options_.order + 1)), 0.3, 1.5);
+    // Errors of the linear part fall with the length of steps, but only in proportion: they set the next step.
+    if (linear > 1 && h > horizon_ * 1e-3) factor = std::fmin(factor, std::fmax(0.7, 1 / linear));
+    if (series > 2 && h * factor > options_.least_step) {
+      h *= factor;
+      continue;
+    }
+    if (degree > 1 && set_.degree < MostDegree()) {
+      const_cast<Monomials&>(stepper_.monomials()).Extend(set_.degree + 1);
+      set_.Raise(stepper_.monomials(), set_.degree + 1);
+      calm_ = 0;
+      continue;
+    }
+    const bool last = h >= left;
+    begin_ = time_;
+    time_ = last ? until : time_ + h;
+    // A step that was cut short says nothing about longer ones.
+    if (!(last && h < h_)) h_ = h * factor;
+    std::swap(set_, next_);
+    ++steps_;
+    ++since_event_;
+    if (last) {
+      // The instant that is meant differs from the sum of the steps by roundings: what the flow does meanwhile.
+      const double late = static_cast<double>(since_event_ + 4) * 0x1p-50 * std::fabs(until);
+      for (size_t i = 0; i < n; ++i) {
+        const Interval rate = stepper_.Rate(i);
+        set_.slack[i] = Above(set_.slack[i] + late * std::fmax(std::fabs(rate.lo), std::fabs(rate.hi)));
+      }
+      since_event_ = 0;
+    }
+    AdaptDegree();
+    return true;
+  }
+}
+
+void Flow::AdaptDegree() {
+  if (set_.degree <= options_.least_degree) return;
+  // Dropping the top degree costs once what is in it, and later what it would have kept from being cut off.
+  if (++calm_ < 10) return;
+  calm_ = 0;
+  double worst = 0;
+  for (size_t i = 0; i < set_.dimension; ++i) {
+    const Interval range = RangeOf(stepper_.monomials(), set_.Polynomial(i));
+    const double allowed = 0.05 * options_.degree_tolerance * (stepper_.h() / horizon_) * range.Width() * 0.5 +
+                           1e-15 * largest_ + 0x1p-900;
+    worst = std::fmax(worst, set_.Top(stepper_.monomials(), i) / allowed);
+  }
+  if (worst < 1) set_.Lower(stepper_.monomials(), set_.degree - 1);
+}
+
+interval::Box Flow::Now() const {
+  interval::Box box(set_.dimension);
+  for (size_t i = 0; i < box.size(); ++i) {
+    const double error = set_.Error(i);
+    box[i] = RangeOf(stepper_.monomials(), set_.Polynomial(i)) + Interval{-error, error};
+  }
+  return box;
+}
+
+}  // namespace rondo::reach

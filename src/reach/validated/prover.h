@@ -1,0 +1,67 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "base/stop.h"
+#include "reach/system/numeric.h"
+#include "reach/validated/flow.h"
+
+namespace rondo::reach {
+
+/// One stretch of time of one part of the initial set, with boxes that enclose the states during it.
+struct TubeSegment {
+  double from = 0, to = 0;
+  interval::Box during;
+};
+
+/// A part of the initial set for which every claim was shown, and how.
+struct Leaf {
+  interval::Box initial;
+  std::vector<TubeSegment> tube;
+  interval::Box final;
+  /// For each step: its length, and the degree of its polynomials.
+  std::vector<std::pair<double, size_t>> steps;
+};
+
+struct Proved {
+  std::vector<Leaf> leaves;
+  size_t steps = 0;
+};
+
+/// A course on which a claim fails; enclosed rigorously at that time if `certain`.
+struct Refuted {
+  Course course;
+  Violation violation;
+  bool certain = false;
+};
+
+/// Neither.
+struct Undecided {
+  std::string reason;
+  /// How near the claims came to failing, by samples: negative is inside.
+  std::optional<Violation> closest;
+  std::vector<Leaf> leaves;
+};
+
+using Outcome = std::variant<Proved, Refuted, Undecided>;
+
+struct ProverOptions {
+  FlowOptions flow;
+  size_t most_leaves = 2000;
+  size_t samples = 200;  ///< trajectories that look for a violation first
+  uint64_t seed = 1;
+  unsigned jobs = 0;
+  bool keep_tube = true;
+  /// Called now and then with the parts that are done and open.
+  std::function<void(size_t, size_t)> progress;
+};
+
+/// Decides whether every claim of the problem holds on every course. Proofs are rigorous; a refutation is a trajectory.
+///
+/// @error if the problem uses what has no derivative (integers, uninterpreted functions).
+base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& options, const base::StopToken& stop);
+
+}  // namespace rondo::reach

@@ -1,0 +1,304 @@
+#include "robot/reach/motion_problem.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "expr/substitute.h"
+#include "reach/system/bounds.h"
+#include "robot/model/body.h"
+
+namespace rondo::robot {
+
+using expr::Rational;
+using interval::Interval;
+
+namespace {
+
+std::optional<Rational> Constant(const Arena& arena, std::optional<TermId> term) {
+  if (!term || !arena.IsNumber(*term)) return std::nullopt;
+  return arena.number(*term);
+}
+
+class Builder {
+ public:
+  Builder(const World& world, const Body& body, const MotionInstance& instance, Arena& arena)
+      : world_(world), body_(body), motion_(instance), arena_(arena) {}
+
+  base::Result<MotionProblem> Run() {
+    reach::Problem& p = out_.problem;
+    p.name = fmt::format("{}: {}", body_.name.text, motion_.text);
+    p.arena = &arena_;
+    if (!motion_.duration) return base::Error{"it may go on for ever: no tube covers that"};
+    if (!(*motion_.duration > Rational(0))) return base::Error{"it takes no time at all"};
+    p.horizon = *motion_.duration;
+    if (auto wrong = States(); !wrong.empty()) return base::Error{wrong};
+    if (auto wrong = Inputs(); !wrong.empty()) return base::Error{wrong};
+    if (auto wrong = Start(); !wrong.empty()) return base::Error{wrong};
+    Claims();
+    return std::move(out_);
+  }
+
+ private:
+  TermId Zero() { return arena_.Number(arena_.Real(), Rational(0)); }
+
+  bool Sampled(TermId input) const {
+    if (!motion_.control || !motion_.control->period) return false;
+    return std::ranges::any_of(motion_.control->laws, [&](const auto& law) { return law.first == input; });
+  }
+
+  void Add(const std::string& name, TermId term, TermId rate, const Variable* variable) {
+    reach::Problem& p = out_.problem;
+    p.states.push_back(term);
+    p.rates.push_back(rate);
+    out_.names.push_back(name);
+    ranges_.push_back(variable);
+  }
+
+  // Plant, controller memory, held inputs, clock.
+  std::string States() {
+    reach::Problem& p = out_.problem;
+    // Inputs that a continuous controller sets are what it says.
+    std::unordered_map<TermId, TermId> laws;
+    if (motion_.control && !motion_.control->period) {
+      for (const auto& [variable, value] : motion_.control->laws) laws.emplace(variable, value);
+    }
+    const auto substituted = [&](TermId t) {
+      for (int depth = 0; depth < 8 && !laws.empty(); ++depth) {
+        const TermId next = expr::Substitute(arena_, t, laws);
+        if (next == t) break;
+        t = next;
+      }
+      return t;
+    };
+    for (size_t i = 0; i < body_.states.size(); ++i) {
+      const Variable& v = body_.states[i];
+      if (!body_.derivatives[i]) return fmt::format("nothing is known about how `{}` changes: it is not in `dynamics`", v.name.text);
+      const TermId rate = substituted(*body_.derivatives[i]);
+      if (!motion_.contract.modifies[i] && rate != Zero()) {
+        return fmt::format("`{}` is not in `modifies`, but its rate under the motion's controller is not zero", v.name.text);
+      }
+      Add(v.name.text, v.term, rate, &v);
+    }
+    for (const Variable& v : body_.memory) {
+      if (laws.contains(v.term)) return fmt::format("`{}` is memory: it needs a controller with a period", v.name.text);
+      Add(v.name.text, v.term, Zero(), &v);
+    }
+    for (const Variable& v : body_.inputs) {
+      if (Sampled(v.term)) Add(v.name.text, v.term, Zero(), nullptr);
+    }
+    Add("clock", world_.clock, arena_.Number(arena_.Real(), Rational(1)), nullptr);
+    for (const MotionInstance::Unknown& u : motion_.unknowns) Add(u.name, u.term, Zero(), nullptr);
+    if (motion_.control && motion_.control->period) {
+      const auto period = Constant(arena_, motion_.control->period);
+      if (!period || !(*period > Rational(0))) return "the period of the controller is no positive constant";
+      reach::Controller controller;
+      controller.period = *period;
+      controller.updates.resize(p.states.size());
+      for (const auto& [variable, value] : motion_.control->laws) {
+        const auto it = std::ranges::find(p.states, variable);
+        controller.updates[static_cast<size_t>(it - p.states.begin())] = value;
+      }
+      p.controller = std::move(controller);
+    }
+    return "";
+  }
+
+  // What the equations mention and nobody sets.
+  std::string Inputs() {
+    reach::Problem& p = out_.problem;
+    std::vector<TermId> terms = p.rates;
+    if (p.controller) {
+      for (const auto& update : p.controller->updates) {
+        if (update) terms.push_back(*update);
+      }
+    }
+    std::vector<TermId> about = {motion_.contract.pre, motion_.contract.during, motion_.contract.post};
+    terms.insert(terms.end(), about.begin(), about.end());
+    std::unordered_map<TermId, const Variable*> known;
+    for (const Body& other : world_.bodies) {
+      for (const auto* list : {&other.states, &other.inputs}) {
+        for (const Variable& v : *list) known.emplace(v.term, &v);
+      }
+    }
+    for (const Variable& v : world_.environment) known.emplace(v.term, &v);
+    for (const TermId t : VariablesOf(arena_, terms)) {
+      if (std::ranges::find(p.states, t) != p.states.end()) continue;
+      const std::string& name = arena_.symbol(arena_.symbol_of(t)).name;
+      const auto it = known.find(t);
+      if (it == known.end()) return fmt::format("`{}` has no known value", name);
+      const auto least = Constant(arena_, it->second->least);
+      const auto most = Constant(arena_, it->second->most);
+      if (!least || !most) return fmt::format("the input `{}` has no bounds", it->second->name.text);
+      p.inputs.push_back({t, {reach::Enclose(*least).lo, reach::Enclose(*most).hi}});
+      out_.assumed.push_back(fmt::format("`{}` in [{:.6g}, {:.6g}]", name, least->ToDouble(), most->ToDouble()));
+    }
+    // The contract assumes more of them.
+    if (motion_.contract.assume != arena_.True() && !p.inputs.empty()) {
+      interval::Box box;
+      std::vector<TermId> variables = p.states;
+      for (size_t i = 0; i < p.states.size(); ++i) box.push_back({});
+      for (const reach::Input& i : p.inputs) {
+        variables.push_back(i.term);
+        box.push_back(i.bounds);
+      }
+      auto formula = reach::Normalise(arena_, motion_.contract.assume);
+      if (formula.ok()) {
+        auto terms_of = reach::Compile(arena_, variables, formula.value().terms);
+        if (terms_of.ok()) {
+          reach::Contract(arena_, terms_of.value(), formula.value(), box);
+          for (size_t i = 0; i < p.inputs.size(); ++i) p.inputs[i].bounds = box[p.states.size() + i];
+          out_.assumed.emplace_back("what the contract assumes of its surroundings");
+        }
+      }
+    }
+    for (const reach::Input& i : p.inputs) {
+      if (i.bounds.IsEmpty()) return "what the contract assumes of its inputs is never true";
+    }
+    return "";
+  }
+
+  // The states that satisfy `pre`, in their ranges.
+  std::string Start() {
+    reach::Problem& p = out_.problem;
+    std::vector<TermId> conditions{motion_.contract.pre};
+    for (size_t i = 0; i < p.states.size(); ++i) {
+      const Variable* v = ranges_[i];
+      const auto unknown = std::ranges::find(motion_.unknowns, p.states[i], &MotionInstance::Unknown::term);
+      if (unknown != motion_.unknowns.end()) {
+        conditions.push_back(arena_.Le(unknown->least, p.states[i]));
+        conditions.push_back(arena_.Le(p.states[i], unknown->most));
+        continue;
+      }
+      if (v == nullptr) {  // the clock, and inputs that will be set at once
+        conditions.push_back(arena_.Eq(p.states[i], Zero()));
+        continue;
+      }
+      if (v->least) conditions.push_back(arena_.Le(*v->least, p.states[i]));
+      if (v->most) conditions.push_back(arena_.Le(p.states[i], *v->most));
+    }
+    p.assume = arena_.And(conditions);
+    // What it says about inputs is about the moment of the start: it only bounds states where it must.
+    std::vector<TermId> variables = p.states;
+    interval::Box box(p.states.size());
+    for (const reach::Input& i : p.inputs) {
+      variables.push_back(i.term);
+      box.push_back(i.bounds);
+    }
+    auto formula = reach::Normalise(arena_, p.assume);
+    if (!formula.ok()) return fmt::format("in `pre`: {}", formula.error().message);
+    auto terms = reach::Compile(arena_, variables, formula.value().terms);
+    if (!terms.ok()) return fmt::format("in `pre`: {}", terms.error().message);
+    reach::Contract(arena_, terms.value(), formula.value(), box);
+    for (size_t i = 0; i < p.states.size(); ++i) {
+      if (box[i].IsEmpty()) return "no state satisfies `pre`";
+      if (!std::isfinite(box[i].lo) || !std::isfinite(box[i].hi))
+        return fmt::format("nothing bounds `{}` at the start", out_.names[i]);
+    }
+    box.resize(p.states.size());
+    p.initial = std::move(box);
+    if (!p.inputs.empty()) {
+      // Only what is about states alone is left for refutations to satisfy.
+      std::vector<TermId> own;
+      for (const TermId c : conditions) {
+        bool alone = true;
+        for (const TermId t : VariablesOf(arena_, {c})) alone = alone && std::ranges::find(p.states, t) != p.states.end();
+        if (alone) own.push_back(c);
+      }
+      p.assume = arena_.And(own);
+    }
+    return "";
+  }
+
+  void Claims() {
+    reach::Problem& p = out_.problem;
+    const Rational start(0);
+    if (motion_.contract.during != arena_.True())
+      p.claims.push_back({"during", motion_.contract.during, start, p.horizon});
+    if (motion_.contract.post != arena_.True()) p.claims.push_back({"post", motion_.contract.post, p.horizon, p.horizon});
+    for (size_t i = 0; i < body_.states.size(); ++i) {
+      const Variable& v = body_.states[i];
+      if (!motion_.contract.modifies[i]) continue;
+      std::vector<TermId> range;
+      if (v.least) range.push_back(arena_.Le(*v.least, v.term));
+      if (v.most) range.push_back(arena_.Le(v.term, *v.most));
+      if (!range.empty())
+        p.claims.push_back({fmt::format("{} in its range", v.name.text), arena_.And(range), start, p.horizon});
+    }
+  }
+
+  const World& world_;
+  const Body& body_;
+  const MotionInstance& motion_;
+  Arena& arena_;
+  MotionProblem out_;
+  std::vector<const Variable*> ranges_;
+};
+
+}  // namespace
+
+base::Result<MotionProblem> ProblemOf(const World& world, const Body& body, const MotionInstance& instance, Arena& arena) {
+  return Builder(world, body, instance, arena).Run();
+}
+
+std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World& world) {
+  Arena& arena = e.arena();
+  world.scope.names.emplace("world", FrameAt(Identity(arena)));
+  world.clock = arena.Variable(arena.Declare("clock", {}, arena.Real()));
+  world.bodies.resize(1);
+  Body& body = world.bodies[0];
+  body.name = type.name;
+  body.self = Identity(arena);
+  body.scope.outer = &world.scope;
+  std::vector<MotionInstance> all;
+  for (const RobotItem& item : type.items) {
+    const auto* group = std::get_if<ParamGroup>(&item);
+    if (group == nullptr) continue;
+    for (const Param& p : group->params) {
+      if (!p.value.valid()) return all;
+    }
+  }
+  FillBody(type, {}, world.clock, body, e);
+  for (const RobotItem& item : type.items) {
+    const auto* motion = std::get_if<MotionDef>(&item);
+    if (motion == nullptr) continue;
+    MotionInstance instance;
+    std::vector<Value> args(motion->params.size());
+    std::vector<diag::Span> spans;
+    bool known = true;
+    for (size_t i = 0; i < args.size(); ++i) {
+      const Param& p = motion->params[i];
+      spans.push_back(p.name.span);
+      if (p.value.valid()) continue;
+      const lang::Dimension* d = lang::FindDimension(p.dimension.text);
+      known = known && d != nullptr && p.least.valid() && p.most.valid();
+      if (!known) break;
+      const TermId some = arena.Variable(
+          arena.Declare(fmt::format("{}.{}.{}", type.name.text, motion->name.text, p.name.text), {}, arena.Real()));
+      args[i] = Quantity(some, *d);
+      const auto least = e.Measure(p.least, body.scope, *d, "a bound");
+      const auto most = e.Measure(p.most, body.scope, *d, "a bound");
+      if (!least || !most) return all;
+      instance.unknowns.push_back({p.name.text, some, *least, *most});
+    }
+    if (!known) continue;
+    const Scope scope = MotionScope(body, *motion, args, spans, e);
+    instance.motion = motion;
+    instance.text = motion->name.text;
+    std::string list;
+    for (const Param& p : motion->params) list += fmt::format("{}{}", list.empty() ? "" : ", ", p.name.text);
+    instance.text += fmt::format("({})", list);
+    instance.contract = ContractOf(body, *motion, scope, e);
+    instance.control = ControlOf(body, *motion, scope, e);
+    if (motion->most.valid()) {
+      const Value most = e.Evaluate(motion->most, scope);
+      if (most.kind == ValueKind::kQuantity && arena.IsNumber(most.terms[0])) instance.duration = arena.number(most.terms[0]);
+    }
+    all.push_back(std::move(instance));
+  }
+  return all;
+}
+
+}  // namespace rondo::robot

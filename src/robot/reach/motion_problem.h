@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "reach/system/problem.h"
+#include "robot/model/world.h"
+
+/// Contracts of motions as problems of reachability.
+namespace rondo::robot {
+
+/// A motion with its arguments, and what it promises.
+struct MotionInstance {
+  std::string text;  ///< as it is called: `Move(1 m)`
+  const MotionDef* motion = nullptr;
+  Contract contract;
+  std::optional<Control> control;
+  std::optional<expr::Rational> duration;  ///< the longest it may take, seconds; nothing: for ever
+  /// Parameters that may have any value between two bounds, the same one all the time.
+  struct Unknown {
+    std::string name;
+    TermId term;
+    TermId least, most;
+  };
+  std::vector<Unknown> unknowns;
+};
+
+/// A problem, and what its states are called by people.
+struct MotionProblem {
+  reach::Problem problem;
+  std::vector<std::string> names;       ///< by state
+  std::vector<std::string> assumed;     ///< what a proof of it rests on, for people
+};
+
+/// Whenever the motion starts as its contract demands, the robot keeps the contract: `during` at all times, `post` at
+/// the end, states in their ranges, and states that it does not modify as they were. Inputs that no controller sets,
+/// and everything of other robots and the environment, may change at any time within their ranges and within what the
+/// contract assumes.
+///
+/// @error says why there is no such problem: no dynamics, no bounds for the start, a motion that modifies nothing but
+/// whose robot moves anyway.
+base::Result<MotionProblem> ProblemOf(const World& world, const Body& body, const MotionInstance& instance, Arena& arena);
+
+/// The motions of a robot type that can be looked at without a choreography: those whose parameters all have a value
+/// or a range. `world` becomes a world with one such robot, which the instances are about.
+std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& evaluator, World& world);
+
+}  // namespace rondo::robot
