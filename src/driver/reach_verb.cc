@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "driver/exit_status.h"
@@ -15,6 +14,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> files;
+  std::string spec;
   std::string contract;
   double timeout = 60;
   unsigned jobs = 0;
@@ -27,11 +27,7 @@ class Run {
   explicit Run(const Options& options) : options_(options) {}
 
   int operator()() {
-    const auto motion = LoadMotion(options_.files, {}, session_);
-    if (motion == nullptr) return kRejected;
-    if (motion->declarations == nullptr || session_.diagnostics.has_errors()) return Finish(kRejected);
-    results_ = ContractsOf(*motion, session_);
-    if (session_.diagnostics.has_errors()) return Finish(kRejected);
+    if (!Load()) return Finish(kRejected);
     if (!options_.contract.empty()) {
       std::erase_if(results_, [&](const ContractResult& r) {
         return r.made.problem.name.find(options_.contract) == std::string::npos;
@@ -42,7 +38,10 @@ class Run {
           .Report(diag::Kind::kReachUnknown, {},
                   options_.contract.empty() ? "there is no contract to look at"
                                             : fmt::format("no contract is called `{}`", options_.contract))
-          .Help("the motions of a choreography; or of robot types, if their parameters have values or ranges");
+          .Help(
+              "the motions of a choreography; or of robot types, if their parameters have values or ranges; "
+              "of a Koord "
+              "program, the assumptions about modules with a `platform`");
       return Finish(kRejected);
     }
     {
@@ -60,26 +59,30 @@ class Run {
   }
 
  private:
+  bool Load() {
+    if (options_.files.size() == 1 && !IsMotionFile(options_.files[0])) {
+      koord_ = LoadKoord({options_.files[0], options_.spec}, session_);
+      if (koord_ == nullptr) return false;
+      results_ = PortContractsOf(*koord_, platforms_, session_);
+    } else {
+      motion_ = LoadMotion(options_.files, {}, session_);
+      if (motion_ == nullptr || motion_->declarations == nullptr || session_.diagnostics.has_errors())
+        return false;
+      results_ = ContractsOf(*motion_, session_);
+    }
+    return !session_.diagnostics.has_errors();
+  }
+
   void Decide(size_t index, ProgressLine& line) {
     ContractResult& r = results_[index];
-    if (!r.impossible.empty() || stop_.cancelled()) return;
-    reach::ProverOptions prover;
-    prover.jobs = options_.jobs;
-    prover.seed = options_.seed;
-    prover.progress = [&](size_t done, size_t open) {
-      line.Show(fmt::format("[{}/{}] {}: {} parts proved, {} open", index + 1, results_.size(), r.made.problem.name, done, open));
+    const std::string& name = r.made.problem.name;
+    DecideOptions options{options_.timeout, options_.jobs, options_.seed, {}};
+    options.progress = [&](size_t done, size_t open) {
+      line.Show(
+          fmt::format("[{}/{}] {}: {} parts proved, {} open", index + 1, results_.size(), name, done, open));
     };
-    line.Show(fmt::format("[{}/{}] {}", index + 1, results_.size(), r.made.problem.name));
-    const auto begin = std::chrono::steady_clock::now();
-    const base::StopToken stop =
-        stop_.WithDeadline(begin + std::chrono::milliseconds(static_cast<int64_t>(options_.timeout * 1000)));
-    auto outcome = reach::Decide(r.made.problem, prover, stop);
-    r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    if (outcome.ok()) {
-      r.outcome = std::move(outcome).value();
-    } else {
-      r.impossible = outcome.error().message;
-    }
+    line.Show(fmt::format("[{}/{}] {}", index + 1, results_.size(), name));
+    DecideContract(r, options, stop_);
   }
 
   int Finish(int status) {
@@ -99,8 +102,15 @@ class Run {
     }
     if (!results_.empty()) {
       size_t proved = 0;
+      for (const ContractResult& r : results_) {
+        if (VerdictOf(r) != "proved") continue;
+        if (!r.model.empty()) Print(fmt::format("{}: proved of `{}`\n", r.made.problem.name, r.model));
+        for (const std::string& d : r.domain) Print(fmt::format("  for {}\n", d));
+        for (const std::string& a : r.made.assumed) Print(fmt::format("  assumed: {}\n", a));
+      }
       for (const ContractResult& r : results_) proved += VerdictOf(r) == "proved" ? 1 : 0;
-      Print(fmt::format("\n{} of {} contract{} proved\n", proved, results_.size(), results_.size() == 1 ? "" : "s"));
+      Print(fmt::format("\n{} of {} contract{} proved\n", proved, results_.size(),
+                        results_.size() == 1 ? "" : "s"));
     }
     if (status != kEstablished) Print(fmt::format("exit {}\n", status));
     return status;
@@ -108,6 +118,9 @@ class Run {
 
   const Options& options_;
   Session session_;
+  std::unique_ptr<LoadedKoord> koord_;
+  std::unique_ptr<Motion> motion_;
+  Platforms platforms_;
   base::StopToken stop_;
   std::vector<ContractResult> results_;
 };
@@ -117,7 +130,9 @@ class Run {
 void AddReachVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("reach", "prove contracts of motions against the dynamics of robots");
-  verb->add_option("FILE", options->files, "robots and choreographies (`.rondo`)")->required();
+  verb->add_option("FILE", options->files, "robots and choreographies (`.rondo`), or a Koord program")
+      ->required();
+  verb->add_option("--spec", options->spec, "the specification of a Koord program, if it is not beside it");
   verb->add_option("--contract", options->contract, "only contracts whose name contains this");
   verb->add_option("--timeout", options->timeout, "seconds for each contract; default: 60")
       ->check(CLI::Range(0.001, 1e6));
@@ -126,7 +141,8 @@ void AddReachVerb(CLI::App& app, int& status) {
   verb->add_flag("--json", options->json, "the result as JSON on standard output");
   verb->footer(
       "example: rondo reach examples/reach/laub_loomis.rondo\n\n"
-      "For every state in which a motion may begin, every parameter and every input: does the robot keep the motion's "
+      "For every state in which a motion may begin, every parameter and every input: does the robot keep the "
+      "motion's "
       "contract\nunder its dynamics and controller (docs/reach.md)?\n"
       "exit status: 0 every contract is proved, 1 one is refuted, or the input is wrong, 3 neither");
   verb->callback([options, &status] { status = Run(*options)(); });

@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "driver/exit_status.h"
+#include "koord/reach/port_problem.h"
+#include "lang/suggest.h"
 
 namespace rondo::driver {
 
@@ -33,7 +37,8 @@ const reach::Problem& ProblemOf(const ContractResult& r) { return r.made.problem
 
 std::vector<ContractResult> ContractsOf(Motion& motion, Session& session) {
   std::vector<ContractResult> all;
-  const auto add = [&](const robot::World& world, const robot::Body& body, const robot::MotionInstance& instance) {
+  const auto add = [&](const robot::World& world, const robot::Body& body,
+                       const robot::MotionInstance& instance) {
     ContractResult result;
     result.span = instance.motion->name.span;
     auto problem = robot::ProblemOf(world, body, instance, motion.arena);
@@ -68,6 +73,67 @@ std::vector<ContractResult> ContractsOf(Motion& motion, Session& session) {
   return all;
 }
 
+std::vector<ContractResult> PortContractsOf(const LoadedKoord& koord, Platforms& platforms,
+                                            Session& session) {
+  std::vector<ContractResult> all;
+  for (const koord::PlatformDef* platform : koord.model.platforms) {
+    const std::filesystem::path beside = session.sources.path(platform->span.file);
+    const std::string file = (beside.parent_path() / platform->file).lexically_normal().string();
+    auto motion = LoadMotion({file}, {}, session);
+    if (motion == nullptr || motion->declarations == nullptr) continue;
+    const robot::RobotDef* type = nullptr;
+    std::vector<std::string> names;
+    for (const choreo::Item& item : motion->module.items) {
+      const auto* def = std::get_if<robot::RobotDef>(&item);
+      if (def == nullptr) continue;
+      names.push_back(def->name.text);
+      if (def->name.text == platform->type) type = def;
+    }
+    auto world = std::make_unique<robot::World>();
+    if (type == nullptr || !robot::StandAlone(*type, motion->declarations->evaluator(), *world)) {
+      auto& report = session.diagnostics.Report(
+          Kind::kChoreoUndeclared, platform->file_span,
+          type == nullptr ? fmt::format("there is no robot type `{}` in `{}`", platform->type, file)
+                          : fmt::format("`{}` has parameters without a value", platform->type));
+      if (const std::string near = lang::Suggest(platform->type, names); type == nullptr && !near.empty())
+        report.Help(fmt::format("did you mean `{}`?", near));
+      continue;
+    }
+    for (koord::PortProblem& p : koord::PortProblems(koord.model, *platform, *world, world->bodies[0],
+                                                     motion->arena, session.diagnostics)) {
+      ContractResult result;
+      result.span = p.assumption->span;
+      result.made = std::move(p.made);
+      result.made.problem.name = p.name;
+      result.impossible = std::move(p.impossible);
+      result.domain = std::move(p.domain);
+      result.model = platform->type;
+      all.push_back(std::move(result));
+    }
+    platforms.files.push_back(std::move(motion));
+    platforms.worlds.push_back(std::move(world));
+  }
+  return all;
+}
+
+void DecideContract(ContractResult& r, const DecideOptions& options, const base::StopToken& stop) {
+  if (!r.impossible.empty() || stop.cancelled()) return;
+  reach::ProverOptions prover;
+  prover.jobs = options.jobs;
+  prover.seed = options.seed;
+  prover.progress = options.progress;
+  const auto begin = std::chrono::steady_clock::now();
+  const base::StopToken limited =
+      stop.WithDeadline(begin + std::chrono::milliseconds(static_cast<int64_t>(options.timeout * 1000)));
+  auto outcome = reach::Decide(r.made.problem, prover, limited);
+  r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (outcome.ok()) {
+    r.outcome = std::move(outcome).value();
+  } else {
+    r.impossible = outcome.error().message;
+  }
+}
+
 std::string_view VerdictOf(const ContractResult& r) {
   if (!r.impossible.empty()) return "unknown";
   if (!r.outcome) return "not begun";
@@ -84,7 +150,8 @@ int StatusOf(const ContractResult& r) {
 void ReportContract(const ContractResult& r, diag::Diagnostics& diagnostics) {
   const std::string& name = ProblemOf(r).name;
   if (!r.impossible.empty()) {
-    diagnostics.Report(Kind::kReachUnknown, r.span, fmt::format("the contract of `{}` cannot be analysed", name))
+    diagnostics
+        .Report(Kind::kReachUnknown, r.span, fmt::format("the contract of `{}` cannot be analysed", name))
         .Note(r.impossible);
     return;
   }
@@ -98,23 +165,26 @@ void ReportContract(const ContractResult& r, diag::Diagnostics& diagnostics) {
     report.Note(fmt::format("start: {}", StateTable(r, refuted->course.start)));
     report.Note(fmt::format("there:  {}", StateTable(r, v.state)));
     report.Note(fmt::format("it fails by {:.3g}", v.miss));
-    report.Note(refuted->certain ? "the exact solution from this start was enclosed: it does break the contract"
-                                 : "a simulation, not enclosed: rounding could matter");
+    report.Note(refuted->certain
+                    ? "the exact solution from this start was enclosed: it does break the contract"
+                    : "a simulation, not enclosed: rounding could matter");
     return;
   }
   if (const auto* open = std::get_if<reach::Undecided>(&*r.outcome)) {
-    auto& report =
-        diagnostics.Report(Kind::kReachUnknown, r.span, fmt::format("the contract of `{}` is neither proved nor refuted", name));
+    auto& report = diagnostics.Report(
+        Kind::kReachUnknown, r.span, fmt::format("the contract of `{}` is neither proved nor refuted", name));
     report.Note(open->reason);
     if (open->closest) {
-      report.Note(fmt::format("closest approach of {} sampled trajectories: `{}` held by {:.3g} after {:.4g} s", "the",
-                              ProblemOf(r).claims[open->closest->claim].name, -open->closest->miss, open->closest->time));
+      report.Note(fmt::format(
+          "closest approach of {} sampled trajectories: `{}` held by {:.3g} after {:.4g} s", "the",
+          ProblemOf(r).claims[open->closest->claim].name, -open->closest->miss, open->closest->time));
     }
   }
 }
 
 std::string ContractTable(const std::vector<ContractResult>& results) {
-  std::string text = fmt::format("{:<9} {:>9} {:>6} {:>7}  {}\n", "verdict", "time", "parts", "steps", "contract");
+  std::string text =
+      fmt::format("{:<9} {:>9} {:>6} {:>7}  {}\n", "verdict", "time", "parts", "steps", "contract");
   for (const ContractResult& r : results) {
     std::string parts;
     std::string steps;
@@ -134,6 +204,8 @@ nlohmann::json ToJson(const ContractResult& r) {
   nlohmann::json out{{"contract", ProblemOf(r).name}, {"verdict", VerdictOf(r)}, {"seconds", r.seconds}};
   if (!r.impossible.empty()) out["reason"] = r.impossible;
   if (!r.made.assumed.empty()) out["assumed"] = r.made.assumed;
+  if (!r.domain.empty()) out["domain"] = r.domain;
+  if (!r.model.empty()) out["model"] = r.model;
   if (!r.outcome) return out;
   if (const auto* proved = std::get_if<reach::Proved>(&*r.outcome)) {
     out["parts"] = proved->leaves.size();

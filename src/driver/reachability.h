@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diag/diagnostic.h"
+#include "driver/koord_load.h"
 #include "driver/motion.h"
 #include "reach/validated/prover.h"
 #include "robot/reach/motion_problem.h"
@@ -14,16 +15,36 @@ namespace rondo::driver {
 /// One contract, and what became of it.
 struct ContractResult {
   robot::MotionProblem made;
-  diag::Span span;                         ///< of the motion
-  std::string impossible;                  ///< why there is no problem to decide, if there is none
-  std::optional<size_t> same_as;           ///< the same problem as an earlier one, up to symmetry
-  std::optional<reach::Outcome> outcome;   ///< nothing: not begun
+  diag::Span span;                        ///< of the motion
+  std::string impossible;                 ///< why there is no problem to decide, if there is none
+  std::optional<size_t> same_as;          ///< the same problem as an earlier one, up to symmetry
+  std::optional<reach::Outcome> outcome;  ///< nothing: not begun
   double seconds = 0;
+  std::vector<std::string> domain;  ///< what else a proof is limited to
+  std::string model;                ///< of a port: by which robot type
 };
 
 /// The contracts of the motions that choreographies use; without any, of all robot types, as far as they have
 /// controllers or dynamics and their parameters have values or ranges.
 std::vector<ContractResult> ContractsOf(Motion& motion, Session& session);
+
+/// The models that the platforms of a Koord program name, read from their files.
+struct Platforms {
+  std::vector<std::unique_ptr<Motion>> files;
+  std::vector<std::unique_ptr<robot::World>> worlds;
+};
+
+/// The controller assumptions of the program whose modules have a platform.
+std::vector<ContractResult> PortContractsOf(const LoadedKoord& koord, Platforms& platforms, Session& session);
+
+/// Decides one contract, within so many seconds.
+struct DecideOptions {
+  double timeout = 60;
+  unsigned jobs = 0;
+  uint64_t seed = 1;
+  std::function<void(size_t, size_t)> progress;
+};
+void DecideContract(ContractResult& result, const DecideOptions& options, const base::StopToken& stop);
 
 int StatusOf(const ContractResult& result);
 std::string_view VerdictOf(const ContractResult& result);

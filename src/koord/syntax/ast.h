@@ -155,8 +155,21 @@ struct ExploreDef {
   std::vector<ExploreEntry> entries;
 };
 
+/// platform Motion = Quadrotor from "quadrotor.rondo" every 0.1
+///
+/// What the ports of a module are made of: a robot type with dynamics and a controller, and how long a round
+/// takes.
+struct PlatformDef {
+  std::string module;
+  std::string type;
+  std::string file;  ///< relative to the file that it stands in
+  diag::Span span;   ///< of the module
+  diag::Span file_span;
+  ExprId period;  ///< seconds
+};
+
 using Item = std::variant<AgentHeader, FunctionDef, AdtDef, EnumDef, ModuleDef, Section, InitDef, EventDef,
-                          ParamDef, AssumeDef, SummaryDef, InvariantDef, ExploreDef>;
+                          ParamDef, AssumeDef, SummaryDef, InvariantDef, ExploreDef, PlatformDef>;
 
 /// One file, or a program with the specification beside it: items in source order.
 struct Program {

@@ -179,6 +179,10 @@ class Formatter {
     Statement(item.span, item.name.empty() ? "invariant:" : fmt::format("invariant {}:", item.name),
               item.body);
   }
+  void Print(const PlatformDef& item) {
+    Line(Whole(item.span, item.period), fmt::format("platform {} = {} from \"{}\" every {}", item.module,
+                                                    item.type, item.file, Text(item.period)));
+  }
   void Print(const ExploreDef& item) {
     Line(item.span, "explore:");
     ++depth_;

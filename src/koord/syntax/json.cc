@@ -87,6 +87,13 @@ class Writer {
     j["body"] = Ex(i.body);
     return j;
   }
+  json operator()(const PlatformDef& i) const {
+    json j = Named("platform", i.module, i.span);
+    j["type"] = i.type;
+    j["file"] = i.file;
+    j["every"] = Ex(i.period);
+    return j;
+  }
   json operator()(const ExploreDef& i) const {
     constexpr const char* kNames[] = {"value", "choice", "function"};
     json j = At(i.span);

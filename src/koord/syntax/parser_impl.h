@@ -55,6 +55,7 @@ class Parser : public lang::ExprParser {
   void ParseSummary(diag::Span start);
   void ParseInvariant(diag::Span start);
   void ParseExplore(diag::Span start);
+  void ParsePlatform(diag::Span start);
   bool ParseExploreEntry(ExploreDef& def);
   bool AcceptContinuation(std::string_view word);
   ExprId ParseSpecBody();

@@ -7,7 +7,8 @@ namespace rondo::koord {
 using diag::Span;
 using lang::TokenKind;
 
-// `param`, `assume`, `summary`, `invariant` and `explore` are words only where such an item can start.
+// `param`, `assume`, `summary`, `invariant`, `platform` and `explore` are words only where such an item can
+// start.
 bool Parser::ParseSpecItem() {
   if (!AtKind(TokenKind::kName)) return false;
   const auto& next = Peek(1);
@@ -18,6 +19,8 @@ bool Parser::ParseSpecItem() {
   } else if (At("assume") && (next.kind != TokenKind::kPunctuation || next.text == ":" || next.text == "(" ||
                               next.text == "-")) {
     ParseAssume(start);
+  } else if (At("platform") && name_follows) {
+    ParsePlatform(start);
   } else if (At("summary") && name_follows) {
     ParseSummary(start);
   } else if ((At("invariant") || At("SafetyProp")) &&
@@ -116,6 +119,29 @@ void Parser::ParseAssume(Span start) {
     def.body = ParseSpecBody();
   }
   AddItem(std::move(def), start);
+  EndSpecItem();
+}
+
+// platform M = T from "file" every e
+void Parser::ParsePlatform(Span start) {
+  Take();
+  PlatformDef def;
+  def.span = Peek().span;
+  def.module = ExpectName("the name of a module");
+  Expect("=", "the name of a module");
+  def.type = ExpectName("a robot type");
+  Expect("from", "the robot type");
+  def.file_span = Peek().span;
+  if (!failed() && AtKind(TokenKind::kString)) {
+    const std::string_view quoted = Peek().text;
+    if (quoted.size() >= 2) def.file = std::string(quoted.substr(1, quoted.size() - 2));
+    Take();
+  } else if (!failed()) {
+    Unexpected("a file name in quotation marks");
+  }
+  Expect("every", "the file");
+  if (!failed()) def.period = ParseSpecBody();
+  if (!failed()) AddItem(std::move(def), start);
   EndSpecItem();
 }
 

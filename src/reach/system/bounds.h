@@ -4,15 +4,17 @@
 
 namespace rondo::reach {
 
-/// Encloses every node of the program on a box; partial functions over the part of the box where they are defined.
+/// Encloses every node of the program on a box; partial functions over the part of the box where they are
+/// defined.
 std::vector<Interval> ValuesOn(const Program& program, const interval::Box& box);
 
 /// What is known of a formula on a box: by interval arithmetic, so kOpen says nothing.
 Truth CheckBox(const Program& terms, const Formula& formula, const interval::Box& box);
 
-/// Shrinks the box to an enclosure of the points in it at which the formula holds: exactly where it bounds a variable
-/// by a number, else by cutting off slabs in which it fails. Sides may be unbounded before and after. The box becomes
-/// empty (one side is) if there is no such point. `terms`: the terms of the formula, over the variables of the box.
+/// Shrinks the box to an enclosure of the points in it at which the formula holds: exactly where it bounds a
+/// variable by a number, else by cutting off slabs in which it fails. Sides may be unbounded before and
+/// after. The box becomes empty (one side is) if there is no such point. `terms`: the terms of the formula,
+/// over the variables of the box.
 void Contract(const expr::Arena& arena, const Program& terms, const Formula& formula, interval::Box& box);
 
 }  // namespace rondo::reach

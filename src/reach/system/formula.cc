@@ -60,19 +60,42 @@ class Normaliser {
  private:
   size_t Junction(bool conjunction, std::vector<size_t> parts) {
     if (parts.size() == 1) return parts[0];
-    out_.nodes.push_back({conjunction ? Formula::Kind::kAnd : Formula::Kind::kOr, 0, false, std::move(parts)});
+    out_.nodes.push_back(
+        {conjunction ? Formula::Kind::kAnd : Formula::Kind::kOr, 0, false, std::move(parts)});
     return out_.nodes.size() - 1;
   }
   // gap <= 0 or gap < 0. Of |a|, max and min with a sign that allows it: for both of their values.
   size_t Atom(TermId gap, bool strict) {
-    const auto parts = arena_.op(gap) == Op::kAdd ? std::vector<TermId>(arena_.args(gap).begin(), arena_.args(gap).end())
-                                                   : std::vector<TermId>{gap};
+    const auto parts = arena_.op(gap) == Op::kAdd
+                           ? std::vector<TermId>(arena_.args(gap).begin(), arena_.args(gap).end())
+                           : std::vector<TermId>{gap};
     for (size_t i = 0; i < parts.size(); ++i) {
       TermId inner = parts[i];
       Rational factor(1);
-      if (arena_.op(inner) == Op::kMul && arena_.args(inner).size() == 2 && arena_.IsNumber(arena_.arg(inner, 0))) {
+      if (arena_.op(inner) == Op::kMul && arena_.args(inner).size() == 2 &&
+          arena_.IsNumber(arena_.arg(inner, 0))) {
         factor = arena_.number(arena_.arg(inner, 0));
         inner = arena_.arg(inner, 1);
+      }
+      const auto with = [&](TermId value) {
+        std::vector<TermId> sum = parts;
+        sum[i] = arena_.Mul(arena_.Number(arena_.Real(), factor), value);
+        return Atom(arena_.Add(sum), strict);
+      };
+      if (arena_.op(inner) == Op::kIte) {
+        const TermId condition = arena_.arg(inner, 0);
+        const TermId then = arena_.arg(inner, 1);
+        const TermId otherwise = arena_.arg(inner, 2);
+        const bool compares = arena_.op(condition) == Op::kLe || arena_.op(condition) == Op::kLt;
+        const TermId low = compares ? arena_.arg(condition, 0) : condition;
+        const TermId high = compares ? arena_.arg(condition, 1) : condition;
+        if (compares && ((then == high && otherwise == low) || (then == low && otherwise == high))) {
+          // if a <= b then b else a: the larger of the two
+          const bool both = (factor > Rational(0)) == (then == high);
+          return Junction(both, {with(then), with(otherwise)});
+        }
+        const size_t first = Junction(false, {Visit(condition, false), with(then)});
+        return Junction(true, {first, Junction(false, {Visit(condition, true), with(otherwise)})});
       }
       if (arena_.op(inner) != Op::kElementary) continue;
       const Elementary e = arena_.elementary_of(inner);
@@ -81,11 +104,6 @@ class Normaliser {
       const TermId second = e == Elementary::kAbs ? arena_.Neg(first) : arena_.arg(inner, 1);
       // A maximum is at most something if both values are, at least something if one is.
       const bool both = (factor > Rational(0)) == (e != Elementary::kMin);
-      const auto with = [&](TermId value) {
-        std::vector<TermId> sum = parts;
-        sum[i] = arena_.Mul(arena_.Number(arena_.Real(), factor), value);
-        return Atom(arena_.Add(sum), strict);
-      };
       return Junction(both, {with(first), with(second)});
     }
     const auto [it, fresh] = known_.emplace(gap, out_.terms.size());
@@ -132,7 +150,9 @@ double MissOf(const Formula& f, size_t n, const std::function<double(size_t)>& v
 
 }  // namespace
 
-Truth Formula::Check(const std::function<Interval(size_t)>& range) const { return CheckNode(*this, root, range); }
+Truth Formula::Check(const std::function<Interval(size_t)>& range) const {
+  return CheckNode(*this, root, range);
+}
 double Formula::Miss(const std::function<double(size_t)>& value) const { return MissOf(*this, root, value); }
 
 base::Result<Formula> Normalise(expr::Arena& arena, TermId formula) {

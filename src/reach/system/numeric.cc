@@ -141,14 +141,15 @@ bool Trajectories::Run(const Course& course, double resolution,
       if (inputs > 0 && !course.inputs.empty())
         next = std::min(next, course.input_period * (std::floor(t / course.input_period + 1e-9) + 1));
       set_inputs(t);
-      auto stepper = odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_fehlberg78<std::vector<double>>());
+      auto stepper = odeint::make_controlled(tolerance, tolerance,
+                                             odeint::runge_kutta_fehlberg78<std::vector<double>>());
       double at = t;
       double dt = next - t;
       int tries = 0;
       while (at < next) {
         dt = std::min(dt, next - at);
         const bool good = stepper.try_step(system, x, at, dt) == odeint::success;
-        if (++tries > 20000 || (!good && dt < 1e-13)) return false;
+        if (++tries > 2'000'000 || (!good && dt < 1e-16)) return false;
         if (next - at < 1e-14) break;
       }
       for (const double v : x) {

@@ -43,8 +43,9 @@ class Trajectories {
   /// @error if the problem uses what cannot be evaluated.
   static base::Result<Trajectories> Of(const Problem& problem);
 
-  /// Calls `visit` with increasing times, the start, both sides of each sampling instant and the horizon included,
-  /// at most `resolution` seconds apart, until it returns false. False if the state is not finite any more.
+  /// Calls `visit` with increasing times, the start, both sides of each sampling instant and the horizon
+  /// included, at most `resolution` seconds apart, until it returns false. False if the state is not finite
+  /// any more.
   bool Run(const Course& course, double resolution,
            const std::function<bool(double, std::span<const double>)>& visit, double tolerance = 1e-13);
   /// How far claim `c` is from holding in this state.

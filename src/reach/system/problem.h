@@ -8,16 +8,16 @@
 
 namespace rondo::reach {
 
-/// Something that happens at the instants 0, period, 2 period, ...: the states take new values, all at once, that are
-/// computed from the old ones. Between these instants they follow their rates.
+/// Something that happens at the instants 0, period, 2 period, ...: the states take new values, all at once,
+/// that are computed from the old ones. Between these instants they follow their rates.
 struct Controller {
   Rational period;
   /// By state; a state without a value keeps its own.
   std::vector<std::optional<TermId>> updates;
 };
 
-/// An input that changes at any time, in any way (measurably), within its bounds. A controller reads the value that
-/// it happens to have at that instant.
+/// An input that changes at any time, in any way (measurably), within its bounds. A controller reads the
+/// value that it happens to have at that instant.
 struct Input {
   TermId term;
   Interval bounds;
@@ -32,8 +32,8 @@ struct Claim {
 
 /// A controlled system, where it may start, and what must hold along every course that it can take.
 ///
-/// Times are in seconds. `initial` encloses what `assume` allows; the claims must hold for the starts that satisfy
-/// both.
+/// Times are in seconds. `initial` encloses what `assume` allows; the claims must hold for the starts that
+/// satisfy both.
 struct Problem {
   std::string name;
   expr::Arena* arena = nullptr;
@@ -42,6 +42,8 @@ struct Problem {
   std::vector<Input> inputs;
   std::optional<Controller> controller;
   interval::Box initial;
+  /// By state: the state whose initial value it has, too, if there is one. Empty: none has.
+  std::vector<std::optional<size_t>> copy_of;
   TermId assume;
   Rational horizon;
   std::vector<Claim> claims;

@@ -93,7 +93,9 @@ class Compiler {
     return node;
   }
   uint32_t Constant(const Rational& value) { return Linear({}, value); }
-  uint32_t Product(uint32_t a, uint32_t b) { return Push({CodeOp::kProduct, std::min(a, b), std::max(a, b)}); }
+  uint32_t Product(uint32_t a, uint32_t b) {
+    return Push({CodeOp::kProduct, std::min(a, b), std::max(a, b)});
+  }
   uint32_t Sine(uint32_t a) {
     const uint32_t sine = Push({CodeOp::kSine, a});
     Push({CodeOp::kCosine, a});
@@ -151,7 +153,8 @@ class Compiler {
       case Op::kIte:
         return Choose(args[0], args[1], args[2]);
       case Op::kVariable:
-        return Unknown(fmt::format("`{}` is neither a state nor an input", arena_.symbol(arena_.symbol_of(t)).name));
+        return Unknown(
+            fmt::format("`{}` is neither a state nor an input", arena_.symbol(arena_.symbol_of(t)).name));
       default:
         return Unknown(fmt::format("`{}` has no derivative", expr::Name(arena_.op(t))));
     }

@@ -47,7 +47,8 @@ Interval BoxSeries::HullOf(size_t node) const {
   return c.op == CodeOp::kAbs ? interval::Abs(Of(c.a, 0)) : interval::Hull(Of(c.b, 0), Of(c.c, 0));
 }
 
-bool BoxSeries::First(uint32_t n, const std::vector<Branch>& branches, const std::vector<Interval>& held, bool map) {
+bool BoxSeries::First(uint32_t n, const std::vector<Branch>& branches, const std::vector<Interval>& held,
+                      bool map) {
   const Code& c = program_.code[n];
   Interval& out = At(n, 0);
   switch (c.op) {
@@ -289,12 +290,14 @@ void BoxSeries::Gradient(const std::vector<uint32_t>& outputs, const std::vector
       // Held: a source of its own, independent of what it is made of.
       std::fill(row.begin(), row.end(), Interval::Point(0));
       const auto it = std::find(sources.begin(), sources.end(), n);
-      if (it != sources.end()) row[variables + static_cast<size_t>(it - sources.begin())] = Interval::Point(1);
+      if (it != sources.end())
+        row[variables + static_cast<size_t>(it - sources.begin())] = Interval::Point(1);
     }
   }
   out.resize(outputs.size() * width);
   for (size_t r = 0; r < outputs.size(); ++r)
-    std::copy(rows_[outputs[r]].begin(), rows_[outputs[r]].end(), out.begin() + static_cast<std::ptrdiff_t>(r * width));
+    std::copy(rows_[outputs[r]].begin(), rows_[outputs[r]].end(),
+              out.begin() + static_cast<std::ptrdiff_t>(r * width));
 }
 
 }  // namespace rondo::reach

@@ -6,7 +6,8 @@
 
 namespace rondo::reach {
 
-/// Taylor coefficients in time and first derivatives of every node of a program over a box, in interval arithmetic.
+/// Taylor coefficients in time and first derivatives of every node of a program over a box, in interval
+/// arithmetic.
 class BoxSeries {
  public:
   BoxSeries(const Program& program, size_t orders);
@@ -15,10 +16,11 @@ class BoxSeries {
     At(program_.variable_nodes[variable], order) = value;
   }
   void SetFromDerivative(size_t variable, size_t output, size_t order);
-  /// Computes the nodes from `first` to before `end` at this order. False if some function is not defined on all of its argument. A node without
-  /// derivative whose branch is kEither is constant in time: `held`, or if `map`, all that it can be.
-  bool Compute(size_t order, const std::vector<Branch>& branches, const std::vector<Interval>& held, bool map = false,
-               uint32_t first = 0, uint32_t end = UINT32_MAX);
+  /// Computes the nodes from `first` to before `end` at this order. False if some function is not defined on
+  /// all of its argument. A node without derivative whose branch is kEither is constant in time: `held`, or
+  /// if `map`, all that it can be.
+  bool Compute(size_t order, const std::vector<Branch>& branches, const std::vector<Interval>& held,
+               bool map = false, uint32_t first = 0, uint32_t end = UINT32_MAX);
   Interval Of(size_t node, size_t order) const { return values_[node * orders_ + order]; }
 
   /// Which branches the nodes without derivatives take on all of the box, from order 0.
@@ -26,11 +28,12 @@ class BoxSeries {
   /// Encloses everything that such a node can be on the box.
   Interval HullOf(size_t node) const;
 
-  /// The derivatives of the outputs by the variables and then by the nodes in `sources` (kinks that are held), over
-  /// the box of order 0; rows of nodes before `first` are known from an earlier call: out[row * (variables + sources) + column].
+  /// The derivatives of the outputs by the variables and then by the nodes in `sources` (kinks that are
+  /// held), over the box of order 0; rows of nodes before `first` are known from an earlier call: out[row *
+  /// (variables + sources) + column].
   void Gradient(const std::vector<uint32_t>& outputs, const std::vector<Branch>& branches,
-                const std::vector<uint32_t>& sources, bool map, std::vector<Interval>& out, uint32_t first = 0,
-                uint32_t end = UINT32_MAX);
+                const std::vector<uint32_t>& sources, bool map, std::vector<Interval>& out,
+                uint32_t first = 0, uint32_t end = UINT32_MAX);
 
  private:
   Interval& At(size_t node, size_t order) { return values_[node * orders_ + order]; }

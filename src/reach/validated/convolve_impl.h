@@ -16,10 +16,12 @@ inline Lanes Load(const double* from) {
   return v;
 }
 
-inline double Sum(const Lanes& v) { return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7])); }
+inline double Sum(const Lanes& v) {
+  return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
 
-void ConvolveHere(const Pairs& pairs, size_t count, const double* left, size_t left_stride, const double* right,
-                  size_t right_stride, size_t blocks, double* out) {
+void ConvolveHere(const Pairs& pairs, size_t count, const double* left, size_t left_stride,
+                  const double* right, size_t right_stride, size_t blocks, double* out) {
   if (blocks == 1) {
     for (size_t o = 0; o < count; ++o) {
       Lanes sum{};
@@ -34,7 +36,8 @@ void ConvolveHere(const Pairs& pairs, size_t count, const double* left, size_t l
     for (uint32_t p = pairs.begin[o]; p < pairs.begin[o + 1]; ++p) {
       const double* a = left + pairs.left[p] * left_stride;
       const double* b = right + pairs.right[p] * right_stride;
-      for (size_t block = 0; block < blocks; ++block) sum += Load(a + block * kWidth) * Load(b + block * kWidth);
+      for (size_t block = 0; block < blocks; ++block)
+        sum += Load(a + block * kWidth) * Load(b + block * kWidth);
     }
     out[o] = Sum(sum);
   }

@@ -18,7 +18,8 @@ FlowOptions Chosen(FlowOptions options, size_t symbols) {
 
 }  // namespace
 
-Flow::Flow(const Dynamics& dynamics, std::shared_ptr<Monomials> monomials, FlowOptions options, double horizon)
+Flow::Flow(const Dynamics& dynamics, std::shared_ptr<Monomials> monomials, FlowOptions options,
+           double horizon)
     : dynamics_(dynamics),
       options_(Chosen(options, monomials->symbols())),
       horizon_(horizon),
@@ -65,23 +66,27 @@ bool Flow::Step(double until) {
     double linear = 0;
     largest_ = 0;
     for (size_t i = 0; i < n; ++i)
-      largest_ = std::fmax(largest_, std::fmax(std::fabs(stepper_.during()[i].lo), std::fabs(stepper_.during()[i].hi)));
+      largest_ = std::fmax(largest_,
+                           std::fmax(std::fabs(stepper_.during()[i].lo), std::fabs(stepper_.during()[i].hi)));
     for (size_t i = 0; i < n; ++i) {
       const Interval start = RangeOf(stepper_.monomials(), set_.Polynomial(i));
       const double radius = start.Width() * 0.5;
       const double magnitude = std::fmax(std::fabs(start.lo), std::fabs(start.hi)) + 1e-6 * largest_;
       const double share = h / horizon_;
       const double least = std::fmax(share * options_.floor, 4e-16) * magnitude + 0x1p-900;
-      series = std::fmax(series, stepper_.SeriesError(i) / (share * options_.series_tolerance * radius + least));
-      linear = std::fmax(linear, stepper_.LinearError(i) / (share * options_.linear_tolerance * radius + least));
+      series =
+          std::fmax(series, stepper_.SeriesError(i) / (share * options_.series_tolerance * radius + least));
+      linear =
+          std::fmax(linear, stepper_.LinearError(i) / (share * options_.linear_tolerance * radius + least));
       // Rounding does not fall with the degree.
       degree = std::fmax(degree, stepper_.DegreeError(i) /
                                      (share * options_.degree_tolerance * radius + least + 1e-14 * largest_));
     }
     if (!(series < 1e300)) return false;
-    double factor =
-        std::clamp(0.9 * std::pow(std::fmax(series, 1e-12), -1.0 / static_cast<double>(options_.order + 1)), 0.3, 1.5);
-    // Errors of the linear part fall with the length of steps, but only in proportion: they set the next step.
+    double factor = std::clamp(
+        0.9 * std::pow(std::fmax(series, 1e-12), -1.0 / static_cast<double>(options_.order + 1)), 0.3, 1.5);
+    // Errors of the linear part fall with the length of steps, but only in proportion: they set the next
+    // step.
     if (linear > 1 && h > horizon_ * 1e-3) factor = std::fmin(factor, std::fmax(0.7, 1 / linear));
     if (series > 2 && h * factor > options_.least_step) {
       h *= factor;
@@ -102,7 +107,8 @@ bool Flow::Step(double until) {
     ++steps_;
     ++since_event_;
     if (last) {
-      // The instant that is meant differs from the sum of the steps by roundings: what the flow does meanwhile.
+      // The instant that is meant differs from the sum of the steps by roundings: what the flow does
+      // meanwhile.
       const double late = static_cast<double>(since_event_ + 4) * 0x1p-50 * std::fabs(until);
       for (size_t i = 0; i < n; ++i) {
         const Interval rate = stepper_.Rate(i);
@@ -123,8 +129,9 @@ void Flow::AdaptDegree() {
   double worst = 0;
   for (size_t i = 0; i < set_.dimension; ++i) {
     const Interval range = RangeOf(stepper_.monomials(), set_.Polynomial(i));
-    const double allowed = 0.05 * options_.degree_tolerance * (stepper_.h() / horizon_) * range.Width() * 0.5 +
-                           1e-15 * largest_ + 0x1p-900;
+    const double allowed =
+        0.05 * options_.degree_tolerance * (stepper_.h() / horizon_) * range.Width() * 0.5 +
+        1e-15 * largest_ + 0x1p-900;
     worst = std::fmax(worst, set_.Top(stepper_.monomials(), i) / allowed);
   }
   if (worst < 1) set_.Lower(stepper_.monomials(), set_.degree - 1);

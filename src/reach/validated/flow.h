@@ -7,11 +7,11 @@ namespace rondo::reach {
 
 /// How to integrate. The defaults suit sets of any size; an engine that knows better may change them.
 struct FlowOptions {
-  size_t order = 0;             ///< of Taylor series in time; 0: 8, and 20 for a single point
-  size_t least_degree = 1;      ///< of polynomials in the initial state
+  size_t order = 0;         ///< of Taylor series in time; 0: 8, and 20 for a single point
+  size_t least_degree = 1;  ///< of polynomials in the initial state
   size_t most_degree = 10;
   size_t most_monomials = 800;  ///< a bound on the cost of a degree
-  double first_step = 1e-3;      ///< seconds
+  double first_step = 1e-3;     ///< seconds
   double most_step = 0.25;
   double least_step = 1e-9;
   /// How much one step may add to errors, for its share of the horizon: relative to the set's radius, ...
@@ -30,13 +30,13 @@ class Flow {
   Flow(const Dynamics& dynamics, std::shared_ptr<Monomials> monomials, FlowOptions options, double horizon);
 
   void Start(FlowSet set, double time);
-  /// One step, at most to `until`; meeting it, the set encloses the states at the instant that `until` is the rounded
-  /// value of. False if no step of the least length can be enclosed: the set is lost.
+  /// One step, at most to `until`; meeting it, the set encloses the states at the instant that `until` is the
+  /// rounded value of. False if no step of the least length can be enclosed: the set is lost.
   bool Step(double until);
 
   const FlowSet& set() const { return set_; }
   FlowSet& set() { return set_; }
-  double time() const { return time_; }   ///< after the step
+  double time() const { return time_; }    ///< after the step
   double begin() const { return begin_; }  ///< of the step
   Stepper& stepper() { return stepper_; }
   size_t steps() const { return steps_; }
@@ -55,8 +55,8 @@ class Flow {
   double time_ = 0, begin_ = 0, h_;
   size_t steps_ = 0;
   size_t since_event_ = 0;  ///< steps since `until` was met
-  double largest_ = 0;  ///< magnitude of any state in the last step
-  size_t calm_ = 0;  ///< steps since the degree was more than needed
+  double largest_ = 0;      ///< magnitude of any state in the last step
+  size_t calm_ = 0;         ///< steps since the degree was more than needed
 };
 
 }  // namespace rondo::reach

@@ -79,11 +79,13 @@ void FlowSet::Compress(Eigen::Index capacity) {
       lost += std::fabs(generators(static_cast<Eigen::Index>(i), order[g]));
     slack[i] = Above(lost);
   }
-  for (Eigen::Index g = 0; g < keep; ++g) generators.col(g) = generators.col(order[static_cast<size_t>(g)]).eval();
+  for (Eigen::Index g = 0; g < keep; ++g)
+    generators.col(g) = generators.col(order[static_cast<size_t>(g)]).eval();
   used = keep;
 }
 
-void FlowSet::Transform(const Eigen::MatrixXd& centre, std::span<const double> errors, Eigen::Index capacity) {
+void FlowSet::Transform(const Eigen::MatrixXd& centre, std::span<const double> errors,
+                        Eigen::Index capacity) {
   const auto n = static_cast<Eigen::Index>(dimension);
   for (size_t i = 0; i < dimension; ++i) {
     if (slack[i] == 0) continue;
@@ -96,7 +98,8 @@ void FlowSet::Transform(const Eigen::MatrixXd& centre, std::span<const double> e
   const Eigen::VectorXd rounded = centre.cwiseAbs() * total;
   generators.leftCols(used) = (centre * generators.leftCols(used)).eval();
   for (size_t i = 0; i < dimension; ++i)
-    slack[i] = Above(errors[i] + rounded[static_cast<Eigen::Index>(i)] * Roundings(static_cast<double>(n) + 2));
+    slack[i] =
+        Above(errors[i] + rounded[static_cast<Eigen::Index>(i)] * Roundings(static_cast<double>(n) + 2));
   Compress(capacity);
 }
 

@@ -4,25 +4,27 @@
 #include <span>
 #include <vector>
 
-#include "reach/validated/monomials.h"
 #include "reach/system/program.h"
+#include "reach/validated/monomials.h"
 
 namespace rondo::reach {
 
-/// A set of states: { P(s) + G g + b : s in [-1, 1]^m, g in [-1, 1]^k, |b_i| <= slack_i }. P: polynomials in the
-/// symbols of the initial set, which keep how states depend on it. G: errors that are carried along linearly
-/// (symbolic remainder). slack: errors since the last step.
+/// A set of states: { P(s) + G g + b : s in [-1, 1]^m, g in [-1, 1]^k, |b_i| <= slack_i }. P: polynomials in
+/// the symbols of the initial set, which keep how states depend on it. G: errors that are carried along
+/// linearly (symbolic remainder). slack: errors since the last step.
 /// @source Chen & Sankaranarayanan, Decomposed reachability analysis for nonlinear systems (RTSS 2016).
 struct FlowSet {
   size_t dimension = 0;
   size_t degree = 1;
-  size_t count = 0;                ///< monomials of degree <= degree
+  size_t count = 0;                 ///< monomials of degree <= degree
   std::vector<double> polynomials;  ///< by state, `count` each
   Eigen::MatrixXd generators;       ///< dimension x (at least) used
   Eigen::Index used = 0;
   std::vector<double> slack;
 
-  std::span<const double> Polynomial(size_t i) const { return std::span(polynomials).subspan(i * count, count); }
+  std::span<const double> Polynomial(size_t i) const {
+    return std::span(polynomials).subspan(i * count, count);
+  }
   std::span<double> Polynomial(size_t i) { return std::span(polynomials).subspan(i * count, count); }
 
   /// At least the sum of all errors of state i.
@@ -34,8 +36,9 @@ struct FlowSet {
   /// The sum of magnitudes of the terms of the highest degree, of state i.
   double Top(const Monomials& monomials, size_t i) const;
 
-  /// The set becomes { centre x + error }: centre is a double matrix, and the images of P are given. `errors` are
-  /// added; roundings are accounted for. The old slack becomes generators. No more than `capacity` generators stay.
+  /// The set becomes { centre x + error }: centre is a double matrix, and the images of P are given. `errors`
+  /// are added; roundings are accounted for. The old slack becomes generators. No more than `capacity`
+  /// generators stay.
   void Transform(const Eigen::MatrixXd& centre, std::span<const double> errors, Eigen::Index capacity);
   /// The same, and these columns (dimension rows) are added.
   void AddGenerator(const Eigen::VectorXd& column);
@@ -44,7 +47,8 @@ struct FlowSet {
   void Compress(Eigen::Index capacity);
 };
 
-/// The box as polynomials of degree 1; a symbol for each side that is not a point. symbol_of: by state, -1 for none.
+/// The box as polynomials of degree 1; a symbol for each side that is not a point. symbol_of: by state, -1
+/// for none.
 FlowSet FromBox(const interval::Box& box, const Monomials& monomials, const std::vector<int>& symbol_of);
 
 /// Encloses a polynomial over [-1, 1]^m.

@@ -14,7 +14,8 @@ double Magnitude(Interval i) { return std::fmax(std::fabs(i.lo), std::fabs(i.hi)
 
 }  // namespace
 
-Map::Map(const Program& program, size_t states, std::vector<Interval> inputs, std::shared_ptr<Monomials> monomials)
+Map::Map(const Program& program, size_t states, std::vector<Interval> inputs,
+         std::shared_ptr<Monomials> monomials)
     : program_(program),
       states_(states),
       inputs_(std::move(inputs)),
@@ -71,7 +72,8 @@ bool Map::Apply(const FlowSet& set) {
   const auto n = static_cast<Eigen::Index>(states_);
   images_.resize(rows, set.used + n);
   images_.leftCols(set.used) = centre_ * set.generators.leftCols(set.used);
-  for (Eigen::Index i = 0; i < n; ++i) images_.col(set.used + i) = centre_.col(i) * set.slack[static_cast<size_t>(i)];
+  for (Eigen::Index i = 0; i < n; ++i)
+    images_.col(set.used + i) = centre_.col(i) * set.slack[static_cast<size_t>(i)];
   return true;
 }
 

@@ -8,12 +8,13 @@
 
 namespace rondo::reach {
 
-/// Images of sets under a program: what a controller computes at an instant, or an expression about the state.
-/// Variables: states, then inputs that can be anything within their bounds. Functions with kinks are enclosed by
-/// linear functions where it is not known on which side the set lies.
+/// Images of sets under a program: what a controller computes at an instant, or an expression about the
+/// state. Variables: states, then inputs that can be anything within their bounds. Functions with kinks are
+/// enclosed by linear functions where it is not known on which side the set lies.
 class Map {
  public:
-  Map(const Program& program, size_t states, std::vector<Interval> inputs, std::shared_ptr<Monomials> monomials);
+  Map(const Program& program, size_t states, std::vector<Interval> inputs,
+      std::shared_ptr<Monomials> monomials);
 
   /// False if some function is not defined on all of the set. The results are below.
   bool Apply(const FlowSet& set);
@@ -36,7 +37,7 @@ class Map {
   std::vector<Interval> gradient_;
   Eigen::MatrixXd centre_, radius_;
   Eigen::VectorXd error_;
-  Eigen::MatrixXd images_;  ///< of generators and slack
+  Eigen::MatrixXd images_;    ///< of generators and slack
   std::vector<double> more_;  ///< errors that are new, by output
 };
 

@@ -131,7 +131,8 @@ Interval ModelSeries::RangeOfParts(std::span<const double> p, double radius) con
 Interval ModelSeries::Range(size_t node, size_t order) const { return RangeOf(At(node, order)); }
 Interval ModelSeries::RangeOf(ModelView model) const { return RangeOfParts(model.polynomial, model.radius); }
 
-void ModelSeries::SetVariable(size_t variable, size_t order, std::span<const double> polynomial, double radius) {
+void ModelSeries::SetVariable(size_t variable, size_t order, std::span<const double> polynomial,
+                              double radius) {
   const size_t node = program_.variable_nodes[variable];
   double* to = Values(node, order);
   std::copy(polynomial.begin(), polynomial.end(), to);
@@ -147,8 +148,8 @@ void ModelSeries::SetFromDerivative(size_t variable, size_t output, size_t order
   double* to = Values(node, order + 1);
   const auto divisor = static_cast<double>(order + 1);
   for (size_t i = 0; i < count_; ++i) to[i] = f[i] / divisor;
-  Radius(node, order + 1) =
-      Above((Radius(from, order) + Above(Norm(from, order)) * Roundings(1)) / divisor + static_cast<double>(count_) * 0x1p-1070);
+  Radius(node, order + 1) = Above((Radius(from, order) + Above(Norm(from, order)) * Roundings(1)) / divisor +
+                                  static_cast<double>(count_) * 0x1p-1070);
   Finish(node, order + 1);
 }
 
@@ -157,7 +158,8 @@ void ModelSeries::Finish(size_t node, size_t order) {
   double* norms = Norms(node, order);
   for (size_t d = 0; d <= degree_; ++d) {
     double sum = 0;
-    for (size_t i = d == 0 ? 0 : monomials_->Count(d - 1); i < monomials_->Count(d); ++i) sum += std::fabs(v[i]);
+    for (size_t i = d == 0 ? 0 : monomials_->Count(d - 1); i < monomials_->Count(d); ++i)
+      sum += std::fabs(v[i]);
     norms[d] = sum;
   }
   for (const uint32_t o : nodes_[node].packed_as) {
@@ -186,7 +188,8 @@ double ModelSeries::Convolution(const Sum& sum, size_t order, double* out) {
   const Pairs pairs{monomials_->pair_begin().data(), monomials_->left().data(), monomials_->right().data()};
   convolve_(pairs, count_, left.packed.data(), stride_, right.packed.data() + (stride_ - 1 - order), stride_,
             order / kWidth + 1, out);
-  const double roundings = Roundings(static_cast<double>(monomials_->longest() * (order / kWidth + 1) * kWidth + 8));
+  const double roundings =
+      Roundings(static_cast<double>(monomials_->longest() * (order / kWidth + 1) * kWidth + 8));
   double error = 0;
   for (size_t a = 0; a <= order; ++a) {
     double weight = 1;
@@ -225,8 +228,8 @@ void ModelSeries::LinearNode(size_t node, size_t order) {
     magnitude += std::fabs(part.factor) * norm;
     radius += std::fabs(part.factor) * r + part.error * (norm + r);
   }
-  Radius(node, order) =
-      Above(radius + Above(magnitude) * Roundings(c.b + 2) + static_cast<double>(count_ * (c.b + 1)) * 0x1p-1070);
+  Radius(node, order) = Above(radius + Above(magnitude) * Roundings(c.b + 2) +
+                              static_cast<double>(count_ * (c.b + 1)) * 0x1p-1070);
 }
 
 void ModelSeries::Multiply(const Model& a, const Model& b, Model& out) const {
@@ -234,7 +237,8 @@ void ModelSeries::Multiply(const Model& a, const Model& b, Model& out) const {
   MultiplyInto(a.polynomial.data(), a.radius, b, out.polynomial.data(), out.radius);
 }
 
-void ModelSeries::MultiplyInto(const double* a, double a_radius, const Model& b, double* out, double& radius) const {
+void ModelSeries::MultiplyInto(const double* a, double a_radius, const Model& b, double* out,
+                               double& radius) const {
   const auto begin = monomials_->pair_begin();
   const auto left = monomials_->left();
   const auto right = monomials_->right();
@@ -258,14 +262,16 @@ void ModelSeries::MultiplyInto(const double* a, double a_radius, const Model& b,
                  static_cast<double>(count_ * monomials_->longest()) * 0x1p-1070);
 }
 
-// g(c + d) = sum of g_k d^k, where c is the model's constant term, and the rest of the series by its enclosure.
+// g(c + d) = sum of g_k d^k, where c is the model's constant term, and the rest of the series by its
+// enclosure.
 bool ModelSeries::Function(CodeOp function, size_t argument, Model& out) {
   const ModelView a = At(argument, 0);
   const Interval range = RangeOf(a);
   const double c = a.polynomial[0];
   const Interval beyond = range - Interval::Point(c);
   std::vector<Interval> at_centre(degree_ + 2), at_range(degree_ + 2);
-  const size_t last = std::max<size_t>(degree_, 1);  // the degree of the series' last term, which is an enclosure
+  const size_t last =
+      std::max<size_t>(degree_, 1);  // the degree of the series' last term, which is an enclosure
   const size_t terms = degree_ == 0 || count_ == 1 ? 0 : last;
   if (!Jet(function, range, at_range) || !Jet(function, Interval::Point(c), at_centre)) return false;
   double reach = 1;
@@ -308,14 +314,16 @@ bool ModelSeries::Arctangent2(size_t y, size_t x, double* out, double& radius) {
   if (!Function(CodeOp::kReciprocal, divisor, inverse)) return false;
   Model quotient;
   quotient.polynomial.resize(count_);
-  MultiplyInto(Values(dividend, 0), Radius(dividend, 0), inverse, quotient.polynomial.data(), quotient.radius);
+  MultiplyInto(Values(dividend, 0), Radius(dividend, 0), inverse, quotient.polynomial.data(),
+               quotient.radius);
   // The arctangent of a model that is not a node: its series about the constant term.
   const double c = quotient.polynomial[0];
   Model d = quotient;
   d.polynomial[0] = 0;
   const Interval range = RangeOfParts(quotient.polynomial, quotient.radius);
   std::vector<Interval> at_centre(degree_ + 2), at_range(degree_ + 2);
-  if (!Jet(CodeOp::kAtan, range, at_range) || !Jet(CodeOp::kAtan, Interval::Point(c), at_centre)) return false;
+  if (!Jet(CodeOp::kAtan, range, at_range) || !Jet(CodeOp::kAtan, Interval::Point(c), at_centre))
+    return false;
   double reach = 1;
   const Interval beyond = range - Interval::Point(c);
   for (size_t k = 0; k <= degree_; ++k) reach = Above(reach * Magnitude(beyond));
@@ -355,7 +363,8 @@ void ModelSeries::KinkNode(size_t node, size_t order, Branch branch, Interval he
     Radius(node, order) = Radius(from, order);
   };
   if (c.op == CodeOp::kAbs && branch != Branch::kEither) return copy(c.a, branch == Branch::kFirst ? 1 : -1);
-  if (c.op == CodeOp::kChoose && branch != Branch::kEither) return copy(branch == Branch::kFirst ? c.b : c.c, 1);
+  if (c.op == CodeOp::kChoose && branch != Branch::kEither)
+    return copy(branch == Branch::kFirst ? c.b : c.c, 1);
   std::fill(out, out + count_, 0.0);
   Radius(node, order) = 0;
   if (order > 0) return;
@@ -368,7 +377,8 @@ void ModelSeries::KinkNode(size_t node, size_t order, Branch branch, Interval he
     // |x| = slope * x + offset +- offset between l < 0 < u: the chord, lowered by half its largest error.
     const Interval x = Range(c.a, 0);
     const double slope = x.lo < x.hi ? (x.hi + x.lo) / (x.hi - x.lo) : 0;
-    // Any slope will do as long as the errors at l, 0 and u are covered: g(x) = |x| - slope x is convex pieces.
+    // Any slope will do as long as the errors at l, 0 and u are covered: g(x) = |x| - slope x is convex
+    // pieces.
     const Interval at_l = -Interval::Point(x.lo) - Interval::Point(slope) * Interval::Point(x.lo);
     const Interval at_u = Interval::Point(x.hi) - Interval::Point(slope) * Interval::Point(x.hi);
     const Interval all = interval::Hull(interval::Hull(at_l, at_u), Interval::Point(0));
@@ -394,8 +404,8 @@ void ModelSeries::KinkNode(size_t node, size_t order, Branch branch, Interval he
   Radius(node, 0) = Above(0.5 * apart + norm * Roundings(4) + std::fmax(Radius(c.b, 0), Radius(c.c, 0)));
 }
 
-bool ModelSeries::Compute(size_t order, const std::vector<Branch>& branches, const std::vector<Interval>& held,
-                          uint32_t first_node, uint32_t end_node) {
+bool ModelSeries::Compute(size_t order, const std::vector<Branch>& branches,
+                          const std::vector<Interval>& held, uint32_t first_node, uint32_t end_node) {
   const auto scale = [&](size_t node, double factor, double error) {
     double* out = Values(node, order);
     double norm = 0;
@@ -403,7 +413,8 @@ bool ModelSeries::Compute(size_t order, const std::vector<Branch>& branches, con
       out[i] = scratch_[i] * factor;
       norm += std::fabs(out[i]);
     }
-    Radius(node, order) = Above(std::fabs(factor) * error + norm * Roundings(2) + static_cast<double>(count_) * 0x1p-1070);
+    Radius(node, order) =
+        Above(std::fabs(factor) * error + norm * Roundings(2) + static_cast<double>(count_) * 0x1p-1070);
   };
   const auto divided = [&](size_t node) {  // scratch_ times the inverse of an order 0
     return [this, node, order](double error) {
@@ -419,7 +430,8 @@ bool ModelSeries::Compute(size_t order, const std::vector<Branch>& branches, con
       scratch_[i] = v[i] - part;
       norm += std::fabs(v[i]) + std::fabs(part);
     }
-    return Above(factor * error + Radius(from, order) + norm * Roundings(3) + static_cast<double>(count_) * 0x1p-1070);
+    return Above(factor * error + Radius(from, order) + norm * Roundings(3) +
+                 static_cast<double>(count_) * 0x1p-1070);
   };
   const auto assign = [&](size_t node, const Model& model) {
     std::copy(model.polynomial.begin(), model.polynomial.end(), Values(node, 0));

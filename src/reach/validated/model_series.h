@@ -3,17 +3,17 @@
 #include <memory>
 #include <vector>
 
+#include "reach/system/program.h"
 #include "reach/validated/convolve.h"
 #include "reach/validated/monomials.h"
-#include "reach/system/program.h"
 
 namespace rondo::reach {
 
 /// What to take for the nodes without derivatives, by node.
 enum class Branch : int8_t {
-  kFirst,    ///< of kAbs: the argument itself; of kChoose: the first value
-  kSecond,   ///< of kAbs: its negation; of kChoose: the other value
-  kEither,   ///< not known: a map takes whatever the value can be, a flow the value in `held`
+  kFirst,   ///< of kAbs: the argument itself; of kChoose: the first value
+  kSecond,  ///< of kAbs: its negation; of kChoose: the other value
+  kEither,  ///< not known: a map takes whatever the value can be, a flow the value in `held`
 };
 
 /// A Taylor model: the set of all p(s) + e, s in [-1, 1]^m, |e| <= radius, where p is a polynomial.
@@ -22,12 +22,13 @@ struct ModelView {
   double radius;
 };
 
-/// The Taylor coefficients in time of every node of a program, as Taylor models in the symbols s: coefficient k of
-/// node v encloses, for each s, the k-th Taylor coefficient of v along the solution that starts at the model of the
-/// initial state at s. Coefficients of order k may depend on the variables' coefficients up to order k only, so that
-/// a caller can fill in those of a differential equation one after the other.
+/// The Taylor coefficients in time of every node of a program, as Taylor models in the symbols s: coefficient
+/// k of node v encloses, for each s, the k-th Taylor coefficient of v along the solution that starts at the
+/// model of the initial state at s. Coefficients of order k may depend on the variables' coefficients up to
+/// order k only, so that a caller can fill in those of a differential equation one after the other.
 ///
-/// Rigorous: truncation of degrees and all rounding (Appendix: docs/theory.md, "Reachability") go to the radii.
+/// Rigorous: truncation of degrees and all rounding (Appendix: docs/theory.md, "Reachability") go to the
+/// radii.
 /// @source Makino & Berz, Taylor models and other validated functional inclusion methods (2003).
 class ModelSeries {
  public:
@@ -41,9 +42,10 @@ class ModelSeries {
   void SetVariable(size_t variable, size_t order, std::span<const double> polynomial, double radius);
   /// A variable's next coefficient is its derivative's (output `output`) last, divided by order + 1.
   void SetFromDerivative(size_t variable, size_t output, size_t order);
-  /// Computes the nodes from `first` to before `end` at this order. False if some function is not defined on all of its argument.
-  bool Compute(size_t order, const std::vector<Branch>& branches, const std::vector<Interval>& held, uint32_t first,
-               uint32_t end);
+  /// Computes the nodes from `first` to before `end` at this order. False if some function is not defined on
+  /// all of its argument.
+  bool Compute(size_t order, const std::vector<Branch>& branches, const std::vector<Interval>& held,
+               uint32_t first, uint32_t end);
   bool Compute(size_t order, const std::vector<Branch>& branches, const std::vector<Interval>& held) {
     return Compute(order, branches, held, 0, static_cast<uint32_t>(program_.code.size()));
   }
@@ -79,7 +81,9 @@ class ModelSeries {
   size_t Place(size_t node, size_t order) const { return (node * orders_ + order) * count_; }
   double* Values(size_t node, size_t order) { return values_.data() + Place(node, order); }
   double& Radius(size_t node, size_t order) { return radius_[node * orders_ + order]; }
-  double* Norms(size_t node, size_t order) { return norms_.data() + (node * orders_ + order) * (degree_ + 1); }
+  double* Norms(size_t node, size_t order) {
+    return norms_.data() + (node * orders_ + order) * (degree_ + 1);
+  }
   const double* Norms(size_t node, size_t order) const {
     return norms_.data() + (node * orders_ + order) * (degree_ + 1);
   }

@@ -9,7 +9,8 @@ namespace rondo::reach {
 
 namespace {
 
-// All exponents of this degree, in descending lexicographic order: for degree 1 that is the order of the symbols.
+// All exponents of this degree, in descending lexicographic order: for degree 1 that is the order of the
+// symbols.
 void Enumerate(size_t symbols, size_t degree, std::vector<uint8_t>& prefix, std::vector<uint8_t>& out) {
   if (prefix.size() + 1 == symbols) {
     out.insert(out.end(), prefix.begin(), prefix.end());

@@ -29,7 +29,8 @@ class Monomials {
   /// The monomial that is this symbol.
   size_t Symbol(size_t symbol) const { return symbol + 1; }
 
-  /// All ordered pairs of monomials whose product is `k` are those from pair_begin()[k] to pair_begin()[k + 1].
+  /// All ordered pairs of monomials whose product is `k` are those from pair_begin()[k] to pair_begin()[k +
+  /// 1].
   std::span<const uint32_t> pair_begin() const { return pair_begin_; }
   std::span<const uint32_t> left() const { return left_; }
   std::span<const uint32_t> right() const { return right_; }

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/parallel.h"
+#include "expr/substitute.h"
 #include "reach/system/bounds.h"
 #include "reach/validated/map.h"
 
@@ -23,6 +24,7 @@ struct CompiledClaim {
   size_t first = 0;  ///< its terms among the observed outputs
   double from = 0, to = 0;
   bool instant = false;
+  std::vector<bool> starts_below;  ///< by term: is it at most zero at the start, exactly?
 };
 
 // Everything about a problem that all parts of the initial set share.
@@ -91,6 +93,26 @@ base::Result<Compiled> CompileAll(const Problem& problem) {
   auto assumed_terms = Compile(arena, problem.states, c.assumed.terms);
   if (!assumed_terms.ok()) return assumed_terms.error();
   c.assumed_terms = std::move(assumed_terms).value();
+  // Terms that are at most zero at the start, whatever rounding says.
+  std::set<TermId> known;
+  std::vector<size_t> nodes{c.assumed.root};
+  while (!nodes.empty()) {
+    const Formula::Node node = c.assumed.nodes[nodes.back()];
+    nodes.pop_back();
+    if (node.kind == Formula::Kind::kAnd) nodes.insert(nodes.end(), node.parts.begin(), node.parts.end());
+    if (node.kind == Formula::Kind::kAtom) known.insert(c.assumed.terms[node.atom]);
+  }
+  expr::Substitution originals;
+  for (size_t i = 0; i < problem.copy_of.size(); ++i) {
+    if (problem.copy_of[i]) originals.emplace(problem.states[i], problem.states[*problem.copy_of[i]]);
+  }
+  for (CompiledClaim& claim : c.claims) {
+    for (const TermId term : claim.formula.terms) {
+      const TermId start = expr::Substitute(arena, term, originals);
+      const bool number = arena.IsNumber(start) && !(arena.number(start) > Rational(0));
+      claim.starts_below.push_back(claim.from == 0 && (number || known.contains(start)));
+    }
+  }
   c.events.assign(events.begin(), events.end());
   return c;
 }
@@ -114,11 +136,15 @@ bool IsThin(Interval side) {
 
 class Runner {
  public:
-  Runner(const Compiled& compiled, const ProverOptions& options, const FlowOptions& flow, const interval::Box& box, const interval::Box& whole,
-         const base::StopToken& stop)
+  Runner(const Compiled& compiled, const ProverOptions& options, const FlowOptions& flow,
+         const interval::Box& box, const interval::Box& whole, const base::StopToken& stop)
       : c_(compiled), options_(options), flow_(flow), box_(box), whole_(whole), stop_(stop) {
     int symbols = 0;
-    for (const Interval& side : box) symbol_of_.push_back(IsThin(side) ? -1 : symbols++);
+    for (size_t i = 0; i < box.size(); ++i)
+      symbol_of_.push_back(IsCopy(i) || IsThin(box[i]) ? -1 : symbols++);
+    for (size_t i = 0; i < box.size(); ++i) {
+      if (IsCopy(i)) symbol_of_[i] = symbol_of_[*c_.problem->copy_of[i]];
+    }
     monomials_ = std::make_shared<Monomials>(static_cast<size_t>(symbols));
   }
 
@@ -143,6 +169,8 @@ class Runner {
   }
 
  private:
+  bool IsCopy(size_t i) const { return i < c_.problem->copy_of.size() && c_.problem->copy_of[i].has_value(); }
+
   bool Fail(const Flow& flow, std::string reason) {
     attempt_.reason = std::move(reason);
     attempt_.time = flow.time();
@@ -186,9 +214,26 @@ class Runner {
       const double radius = RangeOf(*monomials_, flow.set().Polynomial(i)).Width() * 0.5;
       const double start = box_[i].Width() * 0.5;
       const double error = flow.set().Error(i);
-      if (start > 0) worst = std::fmax(worst, error / std::fmax(radius, start));
+      if (symbol_of_[i] >= 0) worst = std::fmax(worst, error / std::fmax(radius, start));
     }
     return worst > 2 && flow.steps() > 10;
+  }
+
+  static Interval AtMostZero(Interval range) { return {std::min(range.lo, 0.0), std::min(range.hi, 0.0)}; }
+  static Interval StartRange(const CompiledClaim& claim, size_t atom, bool start, Interval range) {
+    return start && claim.starts_below[atom] ? AtMostZero(range) : range;
+  }
+
+  // Terms that start at most at zero and have not risen since, though rounding cannot tell them from zero.
+  void Fall(Stepper& stepper) {
+    falls_.resize(c_.claims.size());
+    for (size_t i = 0; i < c_.claims.size(); ++i) {
+      std::vector<bool>& falls = falls_[i];
+      if (falls.empty()) falls = c_.claims[i].starts_below;
+      for (size_t atom = 0; atom < falls.size(); ++atom) {
+        if (falls[atom]) falls[atom] = stepper.ObservedRate(c_.claims[i].first + atom).hi <= 0;
+      }
+    }
   }
 
   // Claims that hold at one instant only, and at the start all that begin there.
@@ -197,9 +242,11 @@ class Runner {
     for (size_t i = 0; i < c_.claims.size(); ++i) {
       const CompiledClaim& claim = c_.claims[i];
       if (claim.from != time || (!claim.instant && !start)) continue;
-      if (!applied && !observe.Apply(flow.set())) return Fail(flow, "a claim is not defined on the whole set");
+      if (!applied && !observe.Apply(flow.set()))
+        return Fail(flow, "a claim is not defined on the whole set");
       applied = true;
-      const Truth truth = claim.formula.Check([&](size_t atom) { return observe.Range(claim.first + atom); });
+      const Truth truth = claim.formula.Check(
+          [&](size_t atom) { return StartRange(claim, atom, start, observe.Range(claim.first + atom)); });
       if (truth == Truth::kTrue) continue;
       attempt_.claim = i;
       return Fail(flow, fmt::format("`{}` is not established", c_.problem->claims[i].name));
@@ -209,6 +256,15 @@ class Runner {
 
   bool During(Flow& flow) {
     Stepper& stepper = flow.stepper();
+    const bool falling = std::ranges::any_of(c_.claims, [&](const CompiledClaim& claim) {
+      const auto i = static_cast<size_t>(&claim - c_.claims.data());
+      const std::vector<bool>& falls = i < falls_.size() ? falls_[i] : claim.starts_below;
+      return std::ranges::find(falls, true) != falls.end();
+    });
+    if (falling) Fall(stepper);
+    const auto below = [&](size_t claim, size_t atom, Interval range) {
+      return falling && falls_[claim][atom] ? AtMostZero(range) : range;
+    };
     // Most claims are clear from the box of the step.
     interval::Box box = stepper.during();
     box.insert(box.end(), c_.dynamics.inputs.begin(), c_.dynamics.inputs.end());
@@ -217,10 +273,14 @@ class Runner {
       const CompiledClaim& claim = c_.claims[i];
       if (claim.instant || claim.from >= flow.time() || claim.to <= flow.begin()) continue;
       const auto check = [&](double from, double to, bool tight) {
-        return claim.formula.Check([&](size_t atom) { return stepper.Observed(claim.first + atom, from, to, tight); });
+        return claim.formula.Check([&](size_t atom) {
+          return below(i, atom, stepper.Observed(claim.first + atom, from, to, tight));
+        });
       };
       const double h = stepper.h();
-      const auto on_box = [&](size_t atom) { return values[c_.observed.outputs[claim.first + atom]]; };
+      const auto on_box = [&](size_t atom) {
+        return below(i, atom, values[c_.observed.outputs[claim.first + atom]]);
+      };
       if (claim.formula.Check(on_box) == Truth::kTrue) continue;
       if (check(0, h, false) == Truth::kTrue) continue;
       if (check(0, h, true) == Truth::kTrue) continue;
@@ -258,7 +318,7 @@ class Runner {
     }
     double best = -1;
     for (size_t v = 0; v < n; ++v) {
-      if (symbol_of_[v] < 0 || share(v) < 0.03 * widest) continue;
+      if (symbol_of_[v] < 0 || IsCopy(v) || share(v) < 0.03 * widest) continue;
       const double weight = curved[v] + 0.01 * linear[v] + 1e-6 * share(v);
       if (weight > best) {
         best = weight;
@@ -273,7 +333,9 @@ class Runner {
         for (size_t i = 0; i < n; ++i)
           slope += set.Polynomial(i)[monomials_->Symbol(static_cast<size_t>(symbol_of_[v]))];
       }
-      attempt_.worst[v] = slope > 0 ? box_[v].hi : slope < 0 ? box_[v].lo : box_[v].Middle();
+      // Just inside: bounds are rounded outwards.
+      const double inset = 1e-9 * box_[v].Width();
+      attempt_.worst[v] = slope > 0 ? box_[v].hi - inset : slope < 0 ? box_[v].lo + inset : box_[v].Middle();
     }
   }
 
@@ -284,6 +346,7 @@ class Runner {
   const interval::Box& whole_;
   const base::StopToken& stop_;
   std::vector<int> symbol_of_;
+  std::vector<std::vector<bool>> falls_;  ///< by claim and term
   std::shared_ptr<Monomials> monomials_;
   Attempt attempt_;
 };
@@ -291,10 +354,18 @@ class Runner {
 // Looks for a trajectory that breaks a claim: corners, middles of faces, points at random.
 class Search {
  public:
-  Search(const Problem& problem, const Compiled& compiled, const ProverOptions& options, Trajectories& trajectories)
-      : problem_(problem), compiled_(compiled), options_(options), trajectories_(trajectories), random_(options.seed) {}
+  Search(const Problem& problem, const Compiled& compiled, const ProverOptions& options,
+         Trajectories& trajectories)
+      : problem_(problem),
+        compiled_(compiled),
+        options_(options),
+        trajectories_(trajectories),
+        random_(options.seed) {}
 
   std::optional<Refuted> Try(std::vector<double> start) {
+    for (size_t i = 0; i < problem_.copy_of.size(); ++i) {
+      if (problem_.copy_of[i]) start[i] = start[*problem_.copy_of[i]];
+    }
     if (trajectories_.MissAssumed(start) > 0) return std::nullopt;
     Course course;
     course.start = std::move(start);
@@ -306,7 +377,8 @@ class Search {
         std::vector<double> values;
         for (size_t i = 0; i < problem_.inputs.size(); ++i) {
           const Interval b = problem_.inputs[i].bounds;
-          const bool up = mode == 0 && !course.inputs.empty() ? course.inputs.back()[i] == b.hi : random_() % 2 == 0;
+          const bool up =
+              mode == 0 && !course.inputs.empty() ? course.inputs.back()[i] == b.hi : random_() % 2 == 0;
           values.push_back(up ? b.hi : b.lo);
         }
         course.inputs.push_back(std::move(values));
@@ -377,7 +449,8 @@ class Search {
     size_t sample = 0;
     while (true) {
       hold(flow.time());
-      if (compiled_.period > 0 && flow.time() >= compiled_.period * static_cast<double>(sample) && flow.time() < end) {
+      if (compiled_.period > 0 && flow.time() >= compiled_.period * static_cast<double>(sample) &&
+          flow.time() < end) {
         Map control(compiled_.updates, dynamics.states, dynamics.inputs, monomials);
         FlowSet next;
         if (!control.Apply(flow.set())) return false;
@@ -399,7 +472,8 @@ class Search {
     Map observe(compiled_.observed, dynamics.states, dynamics.inputs, monomials);
     if (!observe.Apply(flow.set())) return false;
     const CompiledClaim& claim = compiled_.claims[refuted.violation.claim];
-    return claim.formula.Check([&](size_t atom) { return observe.Range(claim.first + atom); }) == Truth::kFalse;
+    return claim.formula.Check([&](size_t atom) { return observe.Range(claim.first + atom); }) ==
+           Truth::kFalse;
   }
 
   const Problem& problem_;
@@ -411,7 +485,8 @@ class Search {
 
 }  // namespace
 
-base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& options, const base::StopToken& stop) {
+base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& options,
+                             const base::StopToken& stop) {
   auto made = CompileAll(problem);
   if (!made.ok()) return made.error();
   const Compiled compiled = std::move(made).value();
@@ -444,7 +519,8 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
         continue;
       }
       reason = a.time > 0 ? fmt::format("{}, at {:.4g} s", a.reason, a.time) : a.reason;
-      if (a.reason == "stopped") return Outcome{Undecided{"stopped", search.closest, std::move(proved.leaves)}};
+      if (a.reason == "stopped")
+        return Outcome{Undecided{"stopped", search.closest, std::move(proved.leaves)}};
       if (!a.worst.empty()) {
         if (auto refuted = search.Try(a.worst)) return Outcome{std::move(*refuted)};
       }
@@ -460,10 +536,14 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
       for (const Interval half : {Interval{side.lo, middle}, Interval{middle, side.hi}}) {
         next.push_back(open[i]);
         next.back()[a.split] = half;
+        for (size_t k = 0; k < problem.copy_of.size(); ++k) {
+          if (problem.copy_of[k] == a.split) next.back()[k] = half;
+        }
       }
     }
     if (done + next.size() > options.most_leaves)
-      return Outcome{Undecided{reason + ", with the most parts that are allowed", search.closest, std::move(proved.leaves)}};
+      return Outcome{Undecided{reason + ", with the most parts that are allowed", search.closest,
+                               std::move(proved.leaves)}};
     open = std::move(next);
     // The whole deserves care; of parts, many cheap ones are better.
     flow.most_monomials = std::min<size_t>(flow.most_monomials, 260);

@@ -59,9 +59,11 @@ struct ProverOptions {
   std::function<void(size_t, size_t)> progress;
 };
 
-/// Decides whether every claim of the problem holds on every course. Proofs are rigorous; a refutation is a trajectory.
+/// Decides whether every claim of the problem holds on every course. Proofs are rigorous; a refutation is a
+/// trajectory.
 ///
 /// @error if the problem uses what has no derivative (integers, uninterpreted functions).
-base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& options, const base::StopToken& stop);
+base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& options,
+                             const base::StopToken& stop);
 
 }  // namespace rondo::reach

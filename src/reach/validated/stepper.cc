@@ -84,7 +84,8 @@ bool Stepper::Advance(const FlowSet& set, double h, double least, size_t order) 
   const bool kinks = !dynamics_.program.kinks.empty();
   if (kinks) {
     for (size_t i = 0; i < states_; ++i)
-      during_[i] = RangeOf(*monomials_, set.Polynomial(i)) + Around(error_[static_cast<Eigen::Index>(i)] * 1.01);
+      during_[i] =
+          RangeOf(*monomials_, set.Polynomial(i)) + Around(error_[static_cast<Eigen::Index>(i)] * 1.01);
     Decide(during_);
   }
   if (!Series(set, order)) return false;
@@ -97,7 +98,8 @@ bool Stepper::Advance(const FlowSet& set, double h, double least, size_t order) 
     if (kinks) {
       // Branches may have been decided for a larger step.
       for (size_t i = 0; i < states_; ++i)
-        during_[i] = RangeOf(*monomials_, set.Polynomial(i)) + Around(error_[static_cast<Eigen::Index>(i)] * 1.01);
+        during_[i] =
+            RangeOf(*monomials_, set.Polynomial(i)) + Around(error_[static_cast<Eigen::Index>(i)] * 1.01);
       Decide(during_);
       if (!Series(set, order)) return false;
     }
@@ -141,7 +143,8 @@ bool Stepper::Try(const FlowSet& set, double h) {
       }
       if (!same) {
         for (const uint32_t k : p.kinks) {
-          if (branches_[k] == Branch::kEither) held_[k] = held_[k] + Around(0.1 * held_[k].Width() + 0x1p-900);
+          if (branches_[k] == Branch::kEither)
+            held_[k] = held_[k] + Around(0.1 * held_[k].Width() + 0x1p-900);
         }
         if (!Series(set, order) || !range_series()) return false;
       }
@@ -166,7 +169,8 @@ bool Stepper::Try(const FlowSet& set, double h) {
     BoxSeries& linear = more ? wide_ : rest_;
     if (more) {
       for (size_t i = 0; i < states_; ++i) wide_.SetVariable(i, 0, box[i]);
-      for (size_t w = 0; w < dynamics_.inputs.size(); ++w) wide_.SetVariable(states_ + w, 0, dynamics_.inputs[w]);
+      for (size_t w = 0; w < dynamics_.inputs.size(); ++w)
+        wide_.SetVariable(states_ + w, 0, dynamics_.inputs[w]);
       if (!wide_.Compute(0, branches_, held_, false, 0, p.core_end)) return false;
     }
     observed_ = Known::kNot;
@@ -183,8 +187,9 @@ bool Stepper::Try(const FlowSet& set, double h) {
       double sum = 0;
       for (size_t v = states_; v < width; ++v) {
         const size_t w = v - states_;
-        const double radius = w < dynamics_.inputs.size() ? RadiusOf(dynamics_.inputs[w])
-                                                          : RadiusOf(held_[sources_[w - dynamics_.inputs.size()]]);
+        const double radius = w < dynamics_.inputs.size()
+                                  ? RadiusOf(dynamics_.inputs[w])
+                                  : RadiusOf(held_[sources_[w - dynamics_.inputs.size()]]);
         sum += Magnitude(gradient_[i * width + v]) * radius;
       }
       push[static_cast<Eigen::Index>(i)] = Above(sum);
@@ -305,12 +310,28 @@ Interval Stepper::Observed(size_t observed, double from, double to, bool tight) 
   for (size_t w = 0; w < dynamics_.inputs.size(); ++w)
     error += Magnitude(observed_gradient_[observed * width + states_ + w]) * RadiusOf(dynamics_.inputs[w]);
   for (size_t s = 0; s < sources_.size(); ++s)
-    error += Magnitude(observed_gradient_[observed * width + p.variables.size() + s]) * RadiusOf(held_[sources_[s]]);
+    error += Magnitude(observed_gradient_[observed * width + p.variables.size() + s]) *
+             RadiusOf(held_[sources_[s]]);
   const Interval enclosed = Polynomial(node, from, to, tight) + Rest(node, to) + Around(Above(error));
   // On the box that holds the step, it may be sharper still.
   const Interval box = wide_.Of(node, 0);
   const bool have = !dynamics_.inputs.empty() || !sources_.empty();
   return interval::Meet(enclosed, have ? box : rest_.Of(node, 0));
+}
+
+Interval Stepper::ObservedRate(size_t observed) {
+  if (!Observe()) return {};
+  const Program& p = dynamics_.program;
+  const bool more = !dynamics_.inputs.empty() || !sources_.empty();
+  const size_t width = p.variables.size() + sources_.size();
+  // What it depends on besides the states may jump.
+  for (size_t v = states_; v < width; ++v) {
+    if (observed_gradient_[observed * width + v] != Interval::Point(0)) return {};
+  }
+  Interval sum = Interval::Point(0);
+  for (size_t j = 0; j < states_; ++j)
+    sum = sum + observed_gradient_[observed * width + j] * (more ? wide_ : rest_).Of(p.outputs[j], 0);
+  return sum;
 }
 
 void Stepper::Finish(const FlowSet& set, FlowSet& next) {

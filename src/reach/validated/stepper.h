@@ -11,8 +11,9 @@
 
 namespace rondo::reach {
 
-/// x' = f(x, w): states, and inputs that may change at any time within their bounds. The first outputs of the program
-/// are the derivatives of the states, in order; further outputs are observed. Variables: states, then inputs.
+/// x' = f(x, w): states, and inputs that may change at any time within their bounds. The first outputs of the
+/// program are the derivatives of the states, in order; further outputs are observed. Variables: states, then
+/// inputs.
 struct Dynamics {
   Program program;
   size_t states = 0;
@@ -30,27 +31,32 @@ struct StepShape {
 /// One step of validated integration. Owns the memory that steps need; one object serves one thread.
 class Stepper {
  public:
-  Stepper(const Dynamics& dynamics, std::shared_ptr<Monomials> monomials, size_t max_order, Eigen::Index capacity);
+  Stepper(const Dynamics& dynamics, std::shared_ptr<Monomials> monomials, size_t max_order,
+          Eigen::Index capacity);
 
-  /// Encloses the flow from `set` for h' <= h seconds, h' as large as it is possible to prove; false if that is not
-  /// even so for `least`, or a function is not defined. The results are below.
+  /// Encloses the flow from `set` for h' <= h seconds, h' as large as it is possible to prove; false if that
+  /// is not even so for `least`, or a function is not defined. The results are below.
   bool Advance(const FlowSet& set, double h, double least, size_t order);
 
   double h() const { return h_; }
   /// Encloses each state during the whole step.
   const interval::Box& during() const { return during_; }
-  /// How much the rest of the series in time, the truncation of degrees, and the width of the linear part added to the
-  /// error of each state.
+  /// How much the rest of the series in time, the truncation of degrees, and the width of the linear part
+  /// added to the error of each state.
   double SeriesError(size_t state) const { return series_error_[state]; }
   double DegreeError(size_t state) const { return degree_error_[state]; }
   double LinearError(size_t state) const { return linear_error_[state]; }
   /// Encloses the derivative of a state during the step, for nominal inputs.
   Interval Rate(size_t state) const { return rest_.Of(dynamics_.program.outputs[state], 0); }
-  /// Encloses output `observed` of the program during [from, to] of the step, loosely (cheap) or by its polynomial.
+  /// Encloses output `observed` of the program during [from, to] of the step, loosely (cheap) or by its
+  /// polynomial.
   Interval Observed(size_t observed, double from, double to, bool tight);
+  /// Encloses the derivative of an output during the step, for all inputs.
+  Interval ObservedRate(size_t observed);
   /// The set at the end of the step.
   void Finish(const FlowSet& set, FlowSet& next);
-  /// Where state i of the solution with these symbols lies at time t of the step, errors included: for audits.
+  /// Where state i of the solution with these symbols lies at time t of the step, errors included: for
+  /// audits.
   Interval StateAt(size_t state, std::span<const double> symbols, double t) const;
 
   const Monomials& monomials() const { return *monomials_; }
@@ -70,8 +76,8 @@ class Stepper {
   size_t states_;
   Eigen::Index capacity_;
   ModelSeries models_;
-  BoxSeries rest_;   // nominal inputs, on the enclosure
-  BoxSeries wide_;   // all inputs, on the enclosure
+  BoxSeries rest_;  // nominal inputs, on the enclosure
+  BoxSeries wide_;  // all inputs, on the enclosure
   std::vector<Branch> branches_;
   std::vector<Interval> held_;
   std::vector<uint32_t> sources_;
@@ -83,8 +89,8 @@ class Stepper {
   Transition transition_;
   double h_ = 0;
   interval::Box during_;
-  Eigen::VectorXd error_;           // at the start
-  Eigen::VectorXd drift_;           // errors during the step
+  Eigen::VectorXd error_;  // at the start
+  Eigen::VectorXd drift_;  // errors during the step
   std::vector<double> input_error_;
   std::vector<double> series_error_, degree_error_, linear_error_;
 };

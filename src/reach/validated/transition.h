@@ -9,7 +9,8 @@ namespace rondo::reach {
 
 using interval::Interval;
 
-/// Encloses the solutions at time h of J' = A(t) J, J(0) = I, for every A(t) that stays in an interval matrix.
+/// Encloses the solutions at time h of J' = A(t) J, J(0) = I, for every A(t) that stays in an interval
+/// matrix.
 struct Transition {
   Eigen::MatrixXd centre, radius;  ///< J(h) = centre +- radius
   Eigen::MatrixXd growth;          ///< |J(t)| <= growth for all t in [0, h]

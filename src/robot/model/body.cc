@@ -45,6 +45,15 @@ class Filler {
         body_.control = ReadControl(body_, *control, body_.scope, e_);
       }
     }
+    for (const RobotItem& item : type_.items) {
+      const auto* port = std::get_if<PortDef>(&item);
+      if (port == nullptr) continue;
+      Value value = e_.Evaluate(port->value, body_.scope);
+      if (!body_.ports.emplace(port->name.text, std::move(value)).second) {
+        e_.diagnostics().Report(Kind::kChoreoDuplicate, port->name.span,
+                                fmt::format("`{}` is declared twice", port->name.text));
+      }
+    }
     for (const Variable& v : body_.states) body_.sensed.insert(v.term);
     for (const Variable& v : body_.inputs) body_.sensed.insert(v.term);
     for (const Variable& v : body_.memory) body_.sensed.insert(v.term);
@@ -208,8 +217,9 @@ Control ReadControl(const Body& body, const ControlDef& def, const Scope& scope,
     }
     if (variable == nullptr) {
       e.diagnostics()
-          .Report(Kind::kChoreoUndeclared, law.variable.span,
-                  fmt::format("`{}` has no input and no memory `{}`", body.type->name.text, law.variable.text))
+          .Report(
+              Kind::kChoreoUndeclared, law.variable.span,
+              fmt::format("`{}` has no input and no memory `{}`", body.type->name.text, law.variable.text))
           .Help("a controller sets inputs and memory; states follow `dynamics`");
       continue;
     }
@@ -218,8 +228,9 @@ Control ReadControl(const Body& body, const ControlDef& def, const Scope& scope,
         e.diagnostics().Report(Kind::kChoreoDuplicate, law.variable.span,
                                fmt::format("`{}` is set twice", law.variable.text));
     }
-    const auto value = e.Measure(law.value, scope, variable->dimension,
-                                 fmt::format("`{}`, in {},", law.variable.text, UnitText(variable->dimension)));
+    const auto value =
+        e.Measure(law.value, scope, variable->dimension,
+                  fmt::format("`{}`, in {},", law.variable.text, UnitText(variable->dimension)));
     if (value) control.laws.emplace_back(variable->term, *value);
   }
   return control;

@@ -77,7 +77,8 @@ Scope MotionScope(const Body& body, const MotionDef& motion, const std::vector<V
     if ((least && arena.Le(*least, value.terms[0]) == arena.False()) ||
         (most && arena.Le(value.terms[0], *most) == arena.False())) {
       e.diagnostics()
-          .Report(Kind::kRobotRange, span, fmt::format("`{}` is not for this value of `{}`", motion.name.text, p.name.text))
+          .Report(Kind::kRobotRange, span,
+                  fmt::format("`{}` is not for this value of `{}`", motion.name.text, p.name.text))
           .At(p.name.span, "its values are declared here");
     }
     scope.names.emplace(p.name.text, std::move(value));
@@ -118,7 +119,8 @@ Contract ContractOf(const Body& body, const MotionDef& motion, const Scope& scop
   return contract;
 }
 
-std::optional<Control> ControlOf(const Body& body, const MotionDef& motion, const Scope& scope, Evaluator& e) {
+std::optional<Control> ControlOf(const Body& body, const MotionDef& motion, const Scope& scope,
+                                 Evaluator& e) {
   if (motion.controls.empty()) return body.control;
   return ReadControl(body, motion.controls[0], scope, e);
 }

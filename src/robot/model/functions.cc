@@ -184,8 +184,9 @@ Value Functions::Extreme(Arguments& a) {
 Value Functions::Clamp(Arguments& a) {
   if (!NeedQuantity(a, 0) || !NeedSame(a, 0, 1) || !NeedSame(a, 0, 2)) return {};
   Value v = a.values[0];
-  v.terms[0] = arena_.Apply(Elementary::kMin, {arena_.Apply(Elementary::kMax, {v.terms[0], a.values[1].terms[0]}),
-                                               a.values[2].terms[0]});
+  v.terms[0] = arena_.Apply(
+      Elementary::kMin,
+      {arena_.Apply(Elementary::kMax, {v.terms[0], a.values[1].terms[0]}), a.values[2].terms[0]});
   v.squared.reset();
   return v;
 }

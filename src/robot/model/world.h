@@ -32,12 +32,13 @@ struct Body {
   std::optional<size_t> parent;  ///< the body whose mount it stands on
   Pose self;                     ///< where it was put, in the world
   std::vector<Variable> states;
-  std::vector<Variable> inputs;                    ///< those that nothing in the world determines
-  std::vector<Variable> memory;                    ///< of the controller
-  std::vector<std::optional<TermId>> derivatives;  ///< of the states, if its dynamics are known
-  std::optional<Control> control;                  ///< for motions without one of their own
-  std::optional<Shape> body;                       ///< the space it occupies; nothing is known without it
-  std::optional<Shape> hull;                       ///< coarser
+  std::vector<Variable> inputs;                     ///< those that nothing in the world determines
+  std::vector<Variable> memory;                     ///< of the controller
+  std::vector<std::optional<TermId>> derivatives;   ///< of the states, if its dynamics are known
+  std::map<std::string, Value, std::less<>> ports;  ///< for programs
+  std::optional<Control> control;                   ///< for motions without one of their own
+  std::optional<Shape> body;                        ///< the space it occupies; nothing is known without it
+  std::optional<Shape> hull;                        ///< coarser
   std::map<std::string, Pose, std::less<>> mounts;
   Scope scope;  ///< what its own expressions may use
 
@@ -96,6 +97,7 @@ Scope MotionScope(const Body& body, const MotionDef& motion, const std::vector<V
 Contract ContractOf(const Body& body, const MotionDef& motion, const Scope& scope, Evaluator& evaluator);
 
 /// The controller of a motion: its own, or that of the robot; nothing if neither has one.
-std::optional<Control> ControlOf(const Body& body, const MotionDef& motion, const Scope& scope, Evaluator& evaluator);
+std::optional<Control> ControlOf(const Body& body, const MotionDef& motion, const Scope& scope,
+                                 Evaluator& evaluator);
 
 }  // namespace rondo::robot

@@ -31,12 +31,20 @@ class Builder {
     reach::Problem& p = out_.problem;
     p.name = fmt::format("{}: {}", body_.name.text, motion_.text);
     p.arena = &arena_;
-    if (!motion_.duration) return base::Error{"it may go on for ever: no tube covers that"};
-    if (!(*motion_.duration > Rational(0))) return base::Error{"it takes no time at all"};
-    p.horizon = *motion_.duration;
+    // What does not move keeps its promises as long as it likes: the start says everything.
+    const bool rests = std::ranges::none_of(motion_.contract.modifies, [](bool m) { return m; });
+    if (!motion_.duration && !rests) return base::Error{"it may go on for ever: no tube covers that"};
+    p.horizon = motion_.duration.value_or(Rational(1));
+    if (!(p.horizon > Rational(0))) return base::Error{"it takes no time at all"};
     if (auto wrong = States(); !wrong.empty()) return base::Error{wrong};
     if (auto wrong = Inputs(); !wrong.empty()) return base::Error{wrong};
     if (auto wrong = Start(); !wrong.empty()) return base::Error{wrong};
+    if (!motion_.duration) {
+      for (const TermId t : VariablesOf(arena_, {motion_.contract.during})) {
+        if (std::ranges::find(body_.states, t, &Variable::term) == body_.states.end())
+          return base::Error{"it may go on for ever, and what it promises is not about its state alone"};
+      }
+    }
     Claims();
     return std::move(out_);
   }
@@ -75,15 +83,18 @@ class Builder {
     };
     for (size_t i = 0; i < body_.states.size(); ++i) {
       const Variable& v = body_.states[i];
-      if (!body_.derivatives[i]) return fmt::format("nothing is known about how `{}` changes: it is not in `dynamics`", v.name.text);
+      if (!body_.derivatives[i])
+        return fmt::format("nothing is known about how `{}` changes: it is not in `dynamics`", v.name.text);
       const TermId rate = substituted(*body_.derivatives[i]);
       if (!motion_.contract.modifies[i] && rate != Zero()) {
-        return fmt::format("`{}` is not in `modifies`, but its rate under the motion's controller is not zero", v.name.text);
+        return fmt::format(
+            "`{}` is not in `modifies`, but its rate under the motion's controller is not zero", v.name.text);
       }
       Add(v.name.text, v.term, rate, &v);
     }
     for (const Variable& v : body_.memory) {
-      if (laws.contains(v.term)) return fmt::format("`{}` is memory: it needs a controller with a period", v.name.text);
+      if (laws.contains(v.term))
+        return fmt::format("`{}` is memory: it needs a controller with a period", v.name.text);
       Add(v.name.text, v.term, Zero(), &v);
     }
     for (const Variable& v : body_.inputs) {
@@ -91,6 +102,8 @@ class Builder {
     }
     Add("clock", world_.clock, arena_.Number(arena_.Real(), Rational(1)), nullptr);
     for (const MotionInstance::Unknown& u : motion_.unknowns) Add(u.name, u.term, Zero(), nullptr);
+    for (const auto& [copy, state] : motion_.copies)
+      Add(arena_.symbol(arena_.symbol_of(copy)).name, copy, Zero(), nullptr);
     if (motion_.control && motion_.control->period) {
       const auto period = Constant(arena_, motion_.control->period);
       if (!period || !(*period > Rational(0))) return "the period of the controller is no positive constant";
@@ -133,7 +146,8 @@ class Builder {
       const auto most = Constant(arena_, it->second->most);
       if (!least || !most) return fmt::format("the input `{}` has no bounds", it->second->name.text);
       p.inputs.push_back({t, {reach::Enclose(*least).lo, reach::Enclose(*most).hi}});
-      out_.assumed.push_back(fmt::format("`{}` in [{:.6g}, {:.6g}]", name, least->ToDouble(), most->ToDouble()));
+      out_.assumed.push_back(
+          fmt::format("`{}` in [{:.6g}, {:.6g}]", name, least->ToDouble(), most->ToDouble()));
     }
     // The contract assumes more of them.
     if (motion_.contract.assume != arena_.True() && !p.inputs.empty()) {
@@ -172,6 +186,12 @@ class Builder {
         conditions.push_back(arena_.Le(p.states[i], unknown->most));
         continue;
       }
+      const auto copy = std::ranges::find(motion_.copies, p.states[i], [](const auto& c) { return c.first; });
+      if (copy != motion_.copies.end()) {
+        p.copy_of.resize(p.states.size());
+        p.copy_of[i] = static_cast<size_t>(std::ranges::find(p.states, copy->second) - p.states.begin());
+        continue;
+      }
       if (v == nullptr) {  // the clock, and inputs that will be set at once
         conditions.push_back(arena_.Eq(p.states[i], Zero()));
         continue;
@@ -193,18 +213,25 @@ class Builder {
     if (!terms.ok()) return fmt::format("in `pre`: {}", terms.error().message);
     reach::Contract(arena_, terms.value(), formula.value(), box);
     for (size_t i = 0; i < p.states.size(); ++i) {
+      if (i < p.copy_of.size() && p.copy_of[i]) continue;
       if (box[i].IsEmpty()) return "no state satisfies `pre`";
       if (!std::isfinite(box[i].lo) || !std::isfinite(box[i].hi))
         return fmt::format("nothing bounds `{}` at the start", out_.names[i]);
     }
     box.resize(p.states.size());
+    for (size_t i = 0; i < p.copy_of.size(); ++i) {
+      if (!p.copy_of[i]) continue;
+      const interval::Interval original = box[*p.copy_of[i]];
+      box[i] = original;
+    }
     p.initial = std::move(box);
     if (!p.inputs.empty()) {
       // Only what is about states alone is left for refutations to satisfy.
       std::vector<TermId> own;
       for (const TermId c : conditions) {
         bool alone = true;
-        for (const TermId t : VariablesOf(arena_, {c})) alone = alone && std::ranges::find(p.states, t) != p.states.end();
+        for (const TermId t : VariablesOf(arena_, {c}))
+          alone = alone && std::ranges::find(p.states, t) != p.states.end();
         if (alone) own.push_back(c);
       }
       p.assume = arena_.And(own);
@@ -217,15 +244,19 @@ class Builder {
     const Rational start(0);
     if (motion_.contract.during != arena_.True())
       p.claims.push_back({"during", motion_.contract.during, start, p.horizon});
-    if (motion_.contract.post != arena_.True()) p.claims.push_back({"post", motion_.contract.post, p.horizon, p.horizon});
+    if (motion_.contract.post != arena_.True())
+      p.claims.push_back({"post", motion_.contract.post, p.horizon, p.horizon});
     for (size_t i = 0; i < body_.states.size(); ++i) {
       const Variable& v = body_.states[i];
-      if (!motion_.contract.modifies[i]) continue;
+      if (!motion_.contract.modifies[i] ||
+          std::ranges::find(motion_.visible, v.term) != motion_.visible.end())
+        continue;
       std::vector<TermId> range;
       if (v.least) range.push_back(arena_.Le(*v.least, v.term));
       if (v.most) range.push_back(arena_.Le(v.term, *v.most));
       if (!range.empty())
-        p.claims.push_back({fmt::format("{} in its range", v.name.text), arena_.And(range), start, p.horizon});
+        p.claims.push_back(
+            {fmt::format("{} in its range", v.name.text), arena_.And(range), start, p.horizon});
     }
   }
 
@@ -239,12 +270,20 @@ class Builder {
 
 }  // namespace
 
-base::Result<MotionProblem> ProblemOf(const World& world, const Body& body, const MotionInstance& instance, Arena& arena) {
+base::Result<MotionProblem> ProblemOf(const World& world, const Body& body, const MotionInstance& instance,
+                                      Arena& arena) {
   return Builder(world, body, instance, arena).Run();
 }
 
-std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World& world) {
+bool StandAlone(const RobotDef& type, Evaluator& e, World& world) {
   Arena& arena = e.arena();
+  for (const RobotItem& item : type.items) {
+    const auto* group = std::get_if<ParamGroup>(&item);
+    if (group == nullptr) continue;
+    for (const Param& p : group->params) {
+      if (!p.value.valid()) return false;
+    }
+  }
   world.scope.names.emplace("world", FrameAt(Identity(arena)));
   world.clock = arena.Variable(arena.Declare("clock", {}, arena.Real()));
   world.bodies.resize(1);
@@ -252,15 +291,15 @@ std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World&
   body.name = type.name;
   body.self = Identity(arena);
   body.scope.outer = &world.scope;
-  std::vector<MotionInstance> all;
-  for (const RobotItem& item : type.items) {
-    const auto* group = std::get_if<ParamGroup>(&item);
-    if (group == nullptr) continue;
-    for (const Param& p : group->params) {
-      if (!p.value.valid()) return all;
-    }
-  }
   FillBody(type, {}, world.clock, body, e);
+  return true;
+}
+
+std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World& world) {
+  std::vector<MotionInstance> all;
+  if (!StandAlone(type, e, world)) return all;
+  Arena& arena = e.arena();
+  const Body& body = world.bodies[0];
   for (const RobotItem& item : type.items) {
     const auto* motion = std::get_if<MotionDef>(&item);
     if (motion == nullptr) continue;
@@ -275,8 +314,8 @@ std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World&
       const lang::Dimension* d = lang::FindDimension(p.dimension.text);
       known = known && d != nullptr && p.least.valid() && p.most.valid();
       if (!known) break;
-      const TermId some = arena.Variable(
-          arena.Declare(fmt::format("{}.{}.{}", type.name.text, motion->name.text, p.name.text), {}, arena.Real()));
+      const TermId some = arena.Variable(arena.Declare(
+          fmt::format("{}.{}.{}", type.name.text, motion->name.text, p.name.text), {}, arena.Real()));
       args[i] = Quantity(some, *d);
       const auto least = e.Measure(p.least, body.scope, *d, "a bound");
       const auto most = e.Measure(p.most, body.scope, *d, "a bound");
@@ -292,9 +331,11 @@ std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World&
     instance.text += fmt::format("({})", list);
     instance.contract = ContractOf(body, *motion, scope, e);
     instance.control = ControlOf(body, *motion, scope, e);
-    if (motion->most.valid()) {
+    const lang::Expr& end = e.pool()[motion->most];
+    if (end.kind != lang::ExprKind::kName || end.text != "inf") {
       const Value most = e.Evaluate(motion->most, scope);
-      if (most.kind == ValueKind::kQuantity && arena.IsNumber(most.terms[0])) instance.duration = arena.number(most.terms[0]);
+      if (most.kind == ValueKind::kQuantity && arena.IsNumber(most.terms[0]))
+        instance.duration = arena.number(most.terms[0]);
     }
     all.push_back(std::move(instance));
   }

@@ -25,26 +25,35 @@ struct MotionInstance {
     TermId least, most;
   };
   std::vector<Unknown> unknowns;
+  /// (variable, state): the variable is what the state was at the start.
+  std::vector<std::pair<TermId, TermId>> copies;
+  /// States that are allowed to leave their ranges: the ranges bound the start only.
+  std::vector<TermId> visible;
 };
 
 /// A problem, and what its states are called by people.
 struct MotionProblem {
   reach::Problem problem;
-  std::vector<std::string> names;       ///< by state
-  std::vector<std::string> assumed;     ///< what a proof of it rests on, for people
+  std::vector<std::string> names;    ///< by state
+  std::vector<std::string> assumed;  ///< what a proof of it rests on, for people
 };
 
-/// Whenever the motion starts as its contract demands, the robot keeps the contract: `during` at all times, `post` at
-/// the end, states in their ranges, and states that it does not modify as they were. Inputs that no controller sets,
-/// and everything of other robots and the environment, may change at any time within their ranges and within what the
-/// contract assumes.
+/// Whenever the motion starts as its contract demands, the robot keeps the contract: `during` at all times,
+/// `post` at the end, states in their ranges, and states that it does not modify as they were. Inputs that no
+/// controller sets, and everything of other robots and the environment, may change at any time within their
+/// ranges and within what the contract assumes.
 ///
-/// @error says why there is no such problem: no dynamics, no bounds for the start, a motion that modifies nothing but
-/// whose robot moves anyway.
-base::Result<MotionProblem> ProblemOf(const World& world, const Body& body, const MotionInstance& instance, Arena& arena);
+/// @error says why there is no such problem: no dynamics, no bounds for the start, a motion that modifies
+/// nothing but whose robot moves anyway.
+base::Result<MotionProblem> ProblemOf(const World& world, const Body& body, const MotionInstance& instance,
+                                      Arena& arena);
 
-/// The motions of a robot type that can be looked at without a choreography: those whose parameters all have a value
-/// or a range. `world` becomes a world with one such robot, which the instances are about.
+/// Makes `world` a world with one robot of this type at its origin. False if it has parameters without a
+/// value.
+bool StandAlone(const RobotDef& type, Evaluator& evaluator, World& world);
+
+/// The motions of a robot type that can be looked at without a choreography: those whose parameters all have
+/// a value or a range. `world` becomes a world with one such robot, which the instances are about.
 std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& evaluator, World& world);
 
 }  // namespace rondo::robot

@@ -16,7 +16,8 @@ struct Name {
   diag::Span span;
 };
 
-/// `T : time = 5 s` or `d : length in [0, 1 m]`: a parameter of a robot or motion. Everything but the name may be missing.
+/// `T : time = 5 s` or `d : length in [0, 1 m]`: a parameter of a robot or motion. Everything but the name
+/// may be missing.
 struct Param {
   Name name;
   Name dimension;  ///< empty if it is not stated
@@ -51,6 +52,12 @@ struct ShapeDef {
   ExprId value;
 };
 
+/// `port target = (tx, ty, tz)`: what a program calls a part of the state, or inputs that it sets.
+struct PortDef {
+  Name name;
+  ExprId value;
+};
+
 /// `x' = v * cos(theta)`
 struct Derivative {
   Name variable;
@@ -62,7 +69,8 @@ struct DynamicsDef {
   std::vector<Derivative> derivatives;
 };
 
-/// `control every 20 ms { vx = ...; sum = ... }`: how inputs and memory are set; without a period, at all times.
+/// `control every 20 ms { vx = ...; sum = ... }`: how inputs and memory are set; without a period, at all
+/// times.
 struct ControlDef {
   diag::Span span;
   ExprId period;  ///< may be missing
@@ -88,7 +96,8 @@ struct MotionDef {
   std::vector<ControlDef> controls;  ///< its own controller: one at most
 };
 
-using RobotItem = std::variant<ParamGroup, StateGroup, FrameDef, ShapeDef, DynamicsDef, ControlDef, MotionDef>;
+using RobotItem =
+    std::variant<ParamGroup, StateGroup, FrameDef, ShapeDef, PortDef, DynamicsDef, ControlDef, MotionDef>;
 
 struct RobotDef {
   diag::Span span;

@@ -77,6 +77,12 @@ void Parser::ParseRobotItem(RobotDef& robot) {
     ParseFrame(robot, keyword);
   } else if (Accept("body") || Accept("hull")) {
     robot.items.emplace_back(ShapeDef{keyword, ParseExpr()});
+  } else if (Accept("port")) {
+    PortDef port;
+    port.name = ParseName("a port");
+    if (!Expect("=", "the name of a port")) return;
+    port.value = ParseExpr();
+    robot.items.emplace_back(std::move(port));
   } else if (Accept("dynamics")) {
     ParseDynamics(robot, keyword.span);
   } else if (Accept("control")) {
@@ -85,7 +91,9 @@ void Parser::ParseRobotItem(RobotDef& robot) {
     ParseMotion(robot, keyword.span);
   } else {
     Unexpected(
-        "`param`, `state`, `input`, `memory`, `frame`, `mount`, `body`, `hull`, `dynamics`, `control` or `motion`");
+        "`param`, `state`, `input`, `memory`, `frame`, `mount`, `body`, `hull`, `port`, `dynamics`, "
+        "`control` or "
+        "`motion`");
   }
 }
 
