@@ -7,6 +7,7 @@
 
 #include "choreo/draw/scene.h"
 #include "choreo/prove/sampler.h"
+#include "driver/discharge.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
 #include "driver/motion.h"
@@ -31,6 +32,11 @@ class Run {
   int operator()() {
     const auto motion = LoadMotion(options_.files, options_.admitted, session_);
     if (motion == nullptr) return kRejected;
+    // First of all, as `rondo reach` does: sums are written in the order in which their terms are made.
+    if (motion->declarations != nullptr && !session_.diagnostics.has_errors() && options_.cache) {
+      const solve::cache::ProofCache cache(solve::cache::ProofCache::DefaultFolder());
+      discharged_ = ProvedMotions(*motion, session_, cache);
+    }
     const auto conditions = CheckStructure(*motion, session_);
     if (!conditions || session_.diagnostics.has_errors()) return Finish(kRejected);
     if (motion->graphs.empty()) {
@@ -42,7 +48,7 @@ class Run {
       for (const auto& c : *conditions) {
         if (c.graph == &graph) own.push_back(c);
       }
-      Prove(graph, own, motion->arena);
+      Prove(graph, own, *motion);
     }
     int status = kEstablished;
     for (const MotionReport& r : reports_) status = Worse(status, StatusOf(r));
@@ -50,7 +56,8 @@ class Run {
   }
 
  private:
-  void Prove(choreo::Graph& graph, const std::vector<choreo::SideCondition>& conditions, expr::Arena& arena) {
+  void Prove(choreo::Graph& graph, const std::vector<choreo::SideCondition>& conditions, Motion& motion) {
+    expr::Arena& arena = motion.arena;
     MotionReport report;
     report.graph = &graph;
     report.regions = FindRegions(graph, arena, options_.timeout, stop_);
@@ -60,6 +67,7 @@ class Run {
       std::erase_if(report.obligations.missing, [](const choreo::Missing& m) { return m.region; });
     const solve::cache::ProofCache cache(options_.cache ? solve::cache::ProofCache::DefaultFolder()
                                                         : std::filesystem::path());
+    report.discharged = discharged_[&graph];
     choreo::ProveOptions prove;
     prove.limits.time = std::chrono::milliseconds(static_cast<int64_t>(options_.timeout * 1000));
     prove.limits.certificates = options_.certify;
@@ -153,6 +161,7 @@ class Run {
   Session session_;
   base::StopToken stop_;
   std::vector<MotionReport> reports_;
+  std::map<const choreo::Graph*, std::set<std::string>> discharged_;
   std::string picture_;
 };
 

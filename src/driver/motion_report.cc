@@ -193,8 +193,12 @@ std::string MotionSummary(const MotionReport& report, const diag::SourceSet& sou
   }
   if (!report.regions.found.empty())
     text += "regions that were found:\n" + RegionLines(report.regions, sources);
-  for (const std::string& a : choreo::AssumptionsOf(*report.graph, report.obligations, report.proofs))
+  for (const std::string& a : choreo::AssumptionsOf(*report.graph, report.discharged, report.obligations, report.proofs))
     text += fmt::format("assumed: {}\n", a);
+  if (!report.discharged.empty()) {
+    text += fmt::format("proved by reachability: controllers keep the contracts of {}\n",
+                        fmt::join(report.discharged, ", "));
+  }
   if (report.interrupted) text += "interrupted: what is marked `?` was not decided\n";
   for (const std::string& problem : report.proofs.problems) text += fmt::format("problem: {}\n", problem);
   return text;
@@ -234,7 +238,8 @@ nlohmann::json ToJson(const MotionReport& report) {
           {"missing", missing},
           {"problems", report.proofs.problems},
           {"regions", regions},
-          {"assumed", choreo::AssumptionsOf(*report.graph, report.obligations, report.proofs)}};
+          {"proved_by_reachability", report.discharged},
+          {"assumed", choreo::AssumptionsOf(*report.graph, report.discharged, report.obligations, report.proofs)}};
 }
 
 }  // namespace rondo::driver

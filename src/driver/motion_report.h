@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <set>
 
 #include "choreo/infer/regions.h"
 #include "choreo/prove/report.h"
@@ -14,6 +15,7 @@ struct MotionReport {
   choreo::Inference regions;
   choreo::Obligations obligations;
   choreo::Proofs proofs;
+  std::set<std::string> discharged;  ///< motions whose contracts are proved (`rondo reach`)
   bool interrupted = false;
 };
 

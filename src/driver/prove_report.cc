@@ -78,7 +78,8 @@ std::string ProveTable(const koord::Report& report) {
   return text;
 }
 
-std::string ProveSummary(const koord::Report& report, const koord::ProveOptions& options, int status) {
+std::string ProveSummary(const koord::Report& report, const koord::ProveOptions& options, int status,
+                         const std::vector<std::string>& discharged) {
   std::string text = "\n";
   const std::string scope = options.robots ? fmt::format("for N = {}", *options.robots) : "for every N";
   for (const Verdict verdict : {Verdict::kProved, Verdict::kRefuted, Verdict::kNotInductive,
@@ -93,6 +94,7 @@ std::string ProveSummary(const koord::Report& report, const koord::ProveOptions&
                           fmt::join(names, ", "));
   }
   if (!report.assumed.empty()) text += fmt::format("assumed: {}\n", fmt::join(report.assumed, "; "));
+  for (const std::string& d : discharged) text += fmt::format("proved by reachability: {}\n", d);
   if (!report.unused.empty()) text += fmt::format("unused: {}\n", fmt::join(report.unused, "; "));
   if (!report.unconstrained.empty())
     text += fmt::format("functions that may return anything: {}\n", fmt::join(report.unconstrained, ", "));

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "driver/discharge.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
 #include "driver/koord_load.h"
@@ -103,9 +104,11 @@ int Run(const Options& options) {
     reached = SearchWitnesses(model, report, options.reach, options.file, options.spec, exploration,
                               session.diagnostics);
   }
+  const std::vector<std::string> discharged = Discharge(*loaded, session, cache, options.file, report.assumed);
   const int status = StatusOf(report);
   if (options.json) {
     nlohmann::json json = ProveJson(session, options.file, &report, status);
+    json["proved_by_reachability"] = discharged;
     for (const Reached& r : reached)
       json["reach"].push_back(
           {{"invariant", r.invariant}, {"found", r.found}, {"text", r.text}, {"run", r.run}});
@@ -119,7 +122,7 @@ int Run(const Options& options) {
     PrintDiagnostics(session.sources, session.diagnostics);
   }
   for (const Reached& r : reached) Print(fmt::format("\nsearch: {}\n", r.text));
-  Print(ProveSummary(report, prove, status));
+  Print(ProveSummary(report, prove, status, discharged));
   return status;
 }
 

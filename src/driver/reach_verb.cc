@@ -3,9 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "driver/discharge.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
 #include "driver/reachability.h"
+#include "driver/statistical.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 
@@ -19,6 +21,9 @@ struct Options {
   double timeout = 60;
   unsigned jobs = 0;
   uint64_t seed = 1;
+  bool statistical = false;
+  StatisticalOptions sampling;
+  bool no_cache = false;
   bool json = false;
 };
 
@@ -44,6 +49,7 @@ class Run {
               "program, the assumptions about modules with a `platform`");
       return Finish(kRejected);
     }
+    if (options_.statistical) return SampleAll();
     {
       ProgressLine line;
       const InterruptScope interrupt(stop_);
@@ -83,6 +89,32 @@ class Run {
     };
     line.Show(fmt::format("[{}/{}] {}", index + 1, results_.size(), name));
     DecideContract(r, options, stop_);
+    StoreProved(r, cache_);
+  }
+
+  // Samples establish nothing: a failure refutes, anything else stays open.
+  int SampleAll() {
+    StatisticalOptions sampling = options_.sampling;
+    sampling.jobs = options_.jobs;
+    sampling.seed = options_.seed;
+    int status = kUndecided;
+    nlohmann::json list = nlohmann::json::array();
+    const InterruptScope interrupt(stop_);
+    for (const ContractResult& r : results_) {
+      const Statistical s = Sample(r, sampling, stop_);
+      if (s.failures + s.corner_failures > 0) status = kRejected;
+      if (options_.json) {
+        list.push_back(ToJson(r, s, sampling));
+      } else {
+        Print(StatisticalLine(r, s));
+      }
+    }
+    if (options_.json) {
+      PrintJson({{"command", "reach"}, {"status", status}, {"contracts", list}});
+    } else {
+      Print(fmt::format("seed {}; starts drawn uniformly from initial boxes; nothing is proved\nexit {}\n", sampling.seed, status));
+    }
+    return status;
   }
 
   int Finish(int status) {
@@ -121,6 +153,8 @@ class Run {
   std::unique_ptr<LoadedKoord> koord_;
   std::unique_ptr<Motion> motion_;
   Platforms platforms_;
+  const solve::cache::ProofCache cache_{options_.no_cache ? std::filesystem::path()
+                                                          : solve::cache::ProofCache::DefaultFolder()};
   base::StopToken stop_;
   std::vector<ContractResult> results_;
 };
@@ -138,6 +172,15 @@ void AddReachVerb(CLI::App& app, int& status) {
       ->check(CLI::Range(0.001, 1e6));
   verb->add_option("--jobs", options->jobs, "threads; default: as many as there are cores");
   verb->add_option("--seed", options->seed, "of the trajectories that look for a violation; default: 1");
+  verb->add_flag("--statistical", options->statistical,
+                 "draw starts at random instead of proving: how many fail at most, with which confidence");
+  verb->add_option("--runs", options->sampling.runs, "of --statistical; default: 6905 (for 0.001 with 0.999)")
+      ->check(CLI::Range(size_t{1}, size_t{100'000'000}));
+  verb->add_option("--confidence", options->sampling.confidence, "of --statistical; default: 0.999")
+      ->check(CLI::Range(0.5, 0.999999999));
+  verb->add_option("--simulator", options->sampling.simulator,
+                   "of --statistical: a command that simulates the robot instead of its model (docs/reach.md)");
+  verb->add_flag("--no-cache", options->no_cache, "do not remember for `rondo prove` what is proved");
   verb->add_flag("--json", options->json, "the result as JSON on standard output");
   verb->footer(
       "example: rondo reach examples/reach/laub_loomis.rondo\n\n"

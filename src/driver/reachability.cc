@@ -37,10 +37,13 @@ const reach::Problem& ProblemOf(const ContractResult& r) { return r.made.problem
 
 std::vector<ContractResult> ContractsOf(Motion& motion, Session& session) {
   std::vector<ContractResult> all;
+  const choreo::Graph* of = nullptr;
   const auto add = [&](const robot::World& world, const robot::Body& body,
                        const robot::MotionInstance& instance) {
     ContractResult result;
     result.span = instance.motion->name.span;
+    result.graph = of;
+    result.motion = fmt::format("{}.{}", body.type->name.text, instance.motion->name.text);
     auto problem = robot::ProblemOf(world, body, instance, motion.arena);
     result.made.problem.name = fmt::format("{}: {}", body.name.text, instance.text);
     if (problem.ok()) {
@@ -51,6 +54,7 @@ std::vector<ContractResult> ContractsOf(Motion& motion, Session& session) {
     all.push_back(std::move(result));
   };
   for (const choreo::Graph& graph : motion.graphs) {
+    of = &graph;
     for (const choreo::Instance& i : graph.instances) {
       robot::MotionInstance instance;
       instance.text = i.text;

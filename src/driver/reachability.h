@@ -21,6 +21,8 @@ struct ContractResult {
   std::optional<reach::Outcome> outcome;  ///< nothing: not begun
   double seconds = 0;
   std::vector<std::string> domain;  ///< what else a proof is limited to
+  const choreo::Graph* graph = nullptr;    ///< of a choreography's motion
+  std::string motion;                      ///< `Type.Motion`
   std::string model;                ///< of a port: by which robot type
 };
 

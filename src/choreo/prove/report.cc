@@ -216,12 +216,14 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
   }
 }
 
-std::vector<std::string> AssumptionsOf(const Graph& graph, const Obligations& obligations,
+std::vector<std::string> AssumptionsOf(const Graph& graph, const std::set<std::string>& proved,
+                                       const Obligations& obligations,
                                        const Proofs& proofs) {
   std::vector<std::string> result;
   std::set<std::string> motions;
   for (const Instance& i : graph.instances)
     motions.insert(fmt::format("{}.{}", graph.BodyOf(i.robot).type->name.text, i.motion->name.text));
+  std::erase_if(motions, [&](const std::string& m) { return proved.contains(m); });
   if (!motions.empty())
     result.push_back(fmt::format("controllers keep the contracts of {}", fmt::join(motions, ", ")));
   std::set<std::string> ranges;

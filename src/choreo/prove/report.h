@@ -15,7 +15,9 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
                   diag::Diagnostics& diagnostics);
 
 /// What a proof rests on, in sentences: contracts of motions, ranges, what controllers have to bridge.
-std::vector<std::string> AssumptionsOf(const Graph& graph, const Obligations& obligations,
+/// `proved`: motions (`Type.Motion`) whose contracts are proved.
+std::vector<std::string> AssumptionsOf(const Graph& graph, const std::set<std::string>& proved,
+                                       const Obligations& obligations,
                                        const Proofs& proofs);
 
 /// "arm.a = 130 deg", for each variable of a witness, in the order of the world.

@@ -133,6 +133,10 @@ class Builder {
       if (!actuator) continue;
       if (!v.least || !v.most) return fmt::format("the input `{}` has no bounds", v.name.text);
       instance.unknowns.push_back({v.name.text, v.term, *v.least, *v.most});
+      if (arena_.IsNumber(*v.least) && arena_.IsNumber(*v.most)) {
+        out.domain.push_back(fmt::format("{} in [{:.6g}, {:.6g}]", v.name.text, arena_.number(*v.least).ToDouble(),
+                                         arena_.number(*v.most).ToDouble()));
+      }
     }
     const auto terms = robot::VariablesOf(arena_, {instance.contract.pre, instance.contract.during});
     for (size_t v = 0; v < model_.variables.size(); ++v) {

@@ -152,6 +152,9 @@ std::vector<Interval> ValuesOn(const Program& p, const interval::Box& box) {
       case CodeOp::kAbs:
         v[n] = interval::Abs(v[c.a]);
         break;
+      case CodeOp::kMax:
+        v[n] = interval::Max(v[c.a], v[c.b]);
+        break;
       case CodeOp::kChoose:
         v[n] = v[c.a].hi <= 0 ? v[c.b] : v[c.a].lo > 0 ? v[c.c] : interval::Hull(v[c.b], v[c.c]);
         break;

@@ -51,6 +51,9 @@ void Evaluator::operator()(std::span<const double> variables, std::span<double> 
       case CodeOp::kAbs:
         out = std::fabs(values_[c.a]);
         break;
+      case CodeOp::kMax:
+        out = std::fmax(values_[c.a], values_[c.b]);
+        break;
       case CodeOp::kChoose:
         out = values_[c.a] <= 0 ? values_[c.b] : values_[c.c];
         break;

@@ -96,6 +96,7 @@ class Compiler {
   uint32_t Product(uint32_t a, uint32_t b) {
     return Push({CodeOp::kProduct, std::min(a, b), std::max(a, b)});
   }
+  uint32_t Max(uint32_t a, uint32_t b) { return Push({CodeOp::kMax, std::min(a, b), std::max(a, b)}); }
   uint32_t Sine(uint32_t a) {
     const uint32_t sine = Push({CodeOp::kSine, a});
     Push({CodeOp::kCosine, a});
@@ -163,7 +164,6 @@ class Compiler {
   uint32_t Function(TermId t) {
     const auto args = arena_.args(t);
     const uint32_t a = Number(args[0]);
-    const Rational half = Rational(1) / Rational(2);
     switch (arena_.elementary_of(t)) {
       case Elementary::kSqrt:
         return Push({CodeOp::kRoot, a});
@@ -172,9 +172,10 @@ class Compiler {
       case Elementary::kMin:
       case Elementary::kMax: {
         const uint32_t b = Number(args[1]);
-        const uint32_t gap = Push({CodeOp::kAbs, Linear({{Rational(1), a}, {Rational(-1), b}}, Rational(0))});
-        const Rational sign = arena_.elementary_of(t) == Elementary::kMax ? half : Rational(0) - half;
-        return Linear({{half, a}, {half, b}, {sign, gap}}, Rational(0));
+        if (arena_.elementary_of(t) == Elementary::kMax) return Max(a, b);
+        // min(a, b) = -max(-a, -b)
+        const uint32_t max = Max(Linear({{Rational(-1), a}}, Rational(0)), Linear({{Rational(-1), b}}, Rational(0)));
+        return Linear({{Rational(-1), max}}, Rational(0));
       }
       case Elementary::kSin:
         return Sine(a);
@@ -294,6 +295,9 @@ void FindDependencies(Program& program) {
         join(c.a);
         join(c.b);
         break;
+      case CodeOp::kMax:
+        join(c.b);
+        [[fallthrough]];
       case CodeOp::kAbs:
         program.kinks.push_back(n);
         join(c.a);

@@ -27,6 +27,7 @@ enum class CodeOp : uint8_t {
   kAtan,   ///< b: the node 1 + a^2
   kAtan2,  ///< atan2(a, b); c: the node a^2 + b^2
   kAbs,
+  kMax,     ///< of a and b
   kChoose,  ///< b if a <= 0, else c; which one holds at a = 0 is left open
 };
 
@@ -54,7 +55,7 @@ struct Program {
   uint32_t core_end = 0;
   /// By node: the variables that it depends on, ascending.
   std::vector<std::vector<uint32_t>> depends;
-  /// Nodes without derivatives somewhere: kAbs, kChoose.
+  /// Nodes without derivatives somewhere: kAbs, kMax, kChoose.
   std::vector<uint32_t> kinks;
 };
 

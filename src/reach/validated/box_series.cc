@@ -38,12 +38,17 @@ void BoxSeries::SetFromDerivative(size_t variable, size_t output, size_t order) 
 Branch BoxSeries::BranchOf(size_t node) const {
   const Code& c = program_.code[node];
   const Interval a = Of(c.a, 0);
+  if (c.op == CodeOp::kMax) {
+    const Interval b = Of(c.b, 0);
+    return a.lo >= b.hi ? Branch::kFirst : b.lo >= a.hi ? Branch::kSecond : Branch::kEither;
+  }
   if (c.op == CodeOp::kAbs) return a.lo >= 0 ? Branch::kFirst : a.hi <= 0 ? Branch::kSecond : Branch::kEither;
   return a.hi < 0 ? Branch::kFirst : a.lo > 0 ? Branch::kSecond : Branch::kEither;
 }
 
 Interval BoxSeries::HullOf(size_t node) const {
   const Code& c = program_.code[node];
+  if (c.op == CodeOp::kMax) return interval::Max(Of(c.a, 0), Of(c.b, 0));
   return c.op == CodeOp::kAbs ? interval::Abs(Of(c.a, 0)) : interval::Hull(Of(c.b, 0), Of(c.c, 0));
 }
 
@@ -92,11 +97,14 @@ bool BoxSeries::First(uint32_t n, const std::vector<Branch>& branches, const std
       if (!Angle(At(c.a, 0), At(c.b, 0), out)) return false;
       break;
     case CodeOp::kAbs:
+    case CodeOp::kMax:
     case CodeOp::kChoose:
       if (branches[n] == Branch::kEither) {
         out = map ? HullOf(n) : held[n];
       } else if (c.op == CodeOp::kAbs) {
         out = branches[n] == Branch::kFirst ? At(c.a, 0) : -At(c.a, 0);
+      } else if (c.op == CodeOp::kMax) {
+        out = At(branches[n] == Branch::kFirst ? c.a : c.b, 0);
       } else {
         out = At(branches[n] == Branch::kFirst ? c.b : c.c, 0);
       }
@@ -169,11 +177,26 @@ void BoxSeries::Later(uint32_t n, size_t k, const std::vector<Branch>& branches)
     case CodeOp::kAbs:
       if (branches[n] != Branch::kEither) sum = branches[n] == Branch::kFirst ? a[k] : -a[k];
       break;
+    case CodeOp::kMax:
+      if (branches[n] != Branch::kEither) sum = At(branches[n] == Branch::kFirst ? c.a : c.b, k);
+      break;
     case CodeOp::kChoose:
       if (branches[n] != Branch::kEither) sum = At(branches[n] == Branch::kFirst ? c.b : c.c, k);
       break;
   }
   out[k] = sum;
+}
+
+bool BoxSeries::Decide(std::vector<Branch>& branches, std::vector<Interval>& held) {
+  for (uint32_t n = 0; n < program_.code.size(); ++n) {
+    const CodeOp op = program_.code[n].op;
+    if (op == CodeOp::kAbs || op == CodeOp::kMax || op == CodeOp::kChoose) {
+      branches[n] = BranchOf(n);
+      held[n] = HullOf(n);
+    }
+    if (!First(n, branches, held, true)) return false;
+  }
+  return true;
 }
 
 bool BoxSeries::Compute(size_t order, const std::vector<Branch>& branches, const std::vector<Interval>& held,
@@ -232,7 +255,7 @@ void BoxSeries::Gradient(const std::vector<uint32_t>& outputs, const std::vector
         if (c.op == CodeOp::kLinear) {
           for (uint32_t p = c.a; p < c.a + c.b; ++p) uses = uses || below[program_.parts[p].node];
         } else if (c.op != CodeOp::kVariable) {
-          uses = below[c.a] || ((c.op == CodeOp::kProduct || c.op == CodeOp::kAtan2) && below[c.b]) ||
+          uses = below[c.a] || ((c.op == CodeOp::kProduct || c.op == CodeOp::kAtan2 || c.op == CodeOp::kMax) && below[c.b]) ||
                  (c.op == CodeOp::kChoose && (below[c.b] || below[c.c]));
         }
         below[n] = uses;
@@ -278,6 +301,13 @@ void BoxSeries::Gradient(const std::vector<uint32_t>& outputs, const std::vector
           add(c.a, {-1, 1});
         }
         break;
+      case CodeOp::kMax:
+        if (branches[n] != Branch::kEither) {
+          add(branches[n] == Branch::kFirst ? c.a : c.b, Interval::Point(1));
+        } else if (map) {
+          for (size_t v = 0; v < width; ++v) row[v] = interval::Hull(rows_[c.a][v], rows_[c.b][v]);
+        }
+        break;
       case CodeOp::kChoose:
         if (branches[n] != Branch::kEither) {
           add(branches[n] == Branch::kFirst ? c.b : c.c, Interval::Point(1));
@@ -286,7 +316,7 @@ void BoxSeries::Gradient(const std::vector<uint32_t>& outputs, const std::vector
         }
         break;
     }
-    if (!map && (c.op == CodeOp::kAbs || c.op == CodeOp::kChoose) && branches[n] == Branch::kEither) {
+    if (!map && (c.op == CodeOp::kAbs || c.op == CodeOp::kMax || c.op == CodeOp::kChoose) && branches[n] == Branch::kEither) {
       // Held: a source of its own, independent of what it is made of.
       std::fill(row.begin(), row.end(), Interval::Point(0));
       const auto it = std::find(sources.begin(), sources.end(), n);

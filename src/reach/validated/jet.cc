@@ -76,6 +76,7 @@ bool Jet(CodeOp function, Interval at, std::span<Interval> out) {
     case CodeOp::kProduct:
     case CodeOp::kAtan2:
     case CodeOp::kAbs:
+    case CodeOp::kMax:
     case CodeOp::kChoose:
       break;
   }

@@ -36,12 +36,7 @@ bool Map::Apply(const FlowSet& set) {
     box_.SetVariable(i, 0, RangeOf(*monomials_, set.Polynomial(i)) + Interval{-error, error});
   }
   for (size_t w = 0; w < inputs_.size(); ++w) box_.SetVariable(states_ + w, 0, inputs_[w]);
-  for (const uint32_t k : program_.kinks) branches_[k] = Branch::kEither;
-  if (!box_.Compute(0, branches_, held_, true)) return false;
-  if (!program_.kinks.empty()) {
-    for (const uint32_t k : program_.kinks) branches_[k] = box_.BranchOf(k);
-    if (!box_.Compute(0, branches_, held_, true)) return false;
-  }
+  if (!box_.Decide(branches_, held_)) return false;
   models_.Begin(set.degree, 0);
   for (size_t i = 0; i < states_; ++i) models_.SetVariable(i, 0, set.Polynomial(i), 0);
   for (size_t w = 0; w < inputs_.size(); ++w) {

@@ -67,6 +67,7 @@ ModelSeries::ModelSeries(const Program& program, std::shared_ptr<Monomials> mono
       case CodeOp::kVariable:
       case CodeOp::kLinear:
       case CodeOp::kAbs:
+      case CodeOp::kMax:
       case CodeOp::kChoose:
         break;
     }
@@ -365,6 +366,7 @@ void ModelSeries::KinkNode(size_t node, size_t order, Branch branch, Interval he
   if (c.op == CodeOp::kAbs && branch != Branch::kEither) return copy(c.a, branch == Branch::kFirst ? 1 : -1);
   if (c.op == CodeOp::kChoose && branch != Branch::kEither)
     return copy(branch == Branch::kFirst ? c.b : c.c, 1);
+  if (c.op == CodeOp::kMax && branch != Branch::kEither) return copy(branch == Branch::kFirst ? c.a : c.b, 1);
   std::fill(out, out + count_, 0.0);
   Radius(node, order) = 0;
   if (order > 0) return;
@@ -376,6 +378,7 @@ void ModelSeries::KinkNode(size_t node, size_t order, Branch branch, Interval he
   if (c.op == CodeOp::kAbs) {
     // |x| = slope * x + offset +- offset between l < 0 < u: the chord, lowered by half its largest error.
     const Interval x = Range(c.a, 0);
+    if (!(x.lo < 0 && x.hi > 0)) return copy(c.a, x.lo >= 0 ? 1 : -1);
     const double slope = x.lo < x.hi ? (x.hi + x.lo) / (x.hi - x.lo) : 0;
     // Any slope will do as long as the errors at l, 0 and u are covered: g(x) = |x| - slope x is convex
     // pieces.
@@ -391,9 +394,38 @@ void ModelSeries::KinkNode(size_t node, size_t order, Branch branch, Interval he
                             (std::fabs(slope) * norm + std::fabs(out[0])) * Roundings(3));
     return;
   }
+  const bool max = c.op == CodeOp::kMax;
+  const double* first = Values(max ? c.a : c.b, 0);
+  const double* second = Values(max ? c.b : c.c, 0);
+  if (max) {
+    // max(a, b) = (a + b + |a - b|) / 2, with |d| = slope d + offset +- error as above.
+    Model d;
+    d.polynomial.resize(count_);
+    double norm = 0;
+    for (size_t i = 0; i < count_; ++i) {
+      d.polynomial[i] = first[i] - second[i];
+      norm += std::fabs(first[i]) + std::fabs(second[i]);
+    }
+    const double radii = Above(Radius(c.a, 0) + Radius(c.b, 0));
+    d.radius = Above(radii + norm * Roundings(2));
+    const Interval x = RangeOfParts(d.polynomial, d.radius);
+    if (!(x.lo < 0 && x.hi > 0)) {
+      // One of them after all, on the polynomials.
+      const size_t larger = x.lo >= 0 ? c.a : c.b;
+      return copy(larger, 1);
+    }
+    const double slope = (x.hi + x.lo) / (x.hi - x.lo);
+    const Interval at_l = -Interval::Point(x.lo) - Interval::Point(slope) * Interval::Point(x.lo);
+    const Interval at_u = Interval::Point(x.hi) - Interval::Point(slope) * Interval::Point(x.hi);
+    const Interval all = interval::Hull(interval::Hull(at_l, at_u), Interval::Point(0));
+    const auto [offset, offset_error] = Centred(all);
+    for (size_t i = 0; i < count_; ++i) out[i] = 0.5 * (first[i] + second[i] + slope * d.polynomial[i]);
+    out[0] += 0.5 * offset;
+    Radius(node, 0) = Above(0.5 * (radii + std::fabs(slope) * d.radius + offset_error) +
+                            (2 * norm + std::fabs(out[0]) + std::fabs(offset)) * Roundings(8));
+    return;
+  }
   // Either value: their mean, and half their difference as error.
-  const double* first = Values(c.b, 0);
-  const double* second = Values(c.c, 0);
   double apart = 0;
   double norm = 0;
   for (size_t i = 0; i < count_; ++i) {
@@ -535,6 +567,7 @@ bool ModelSeries::Compute(size_t order, const std::vector<Branch>& branches,
         }
         break;
       case CodeOp::kAbs:
+      case CodeOp::kMax:
       case CodeOp::kChoose:
         KinkNode(n, order, branches[n], held[n]);
         break;

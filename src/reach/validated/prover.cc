@@ -231,7 +231,7 @@ class Runner {
       std::vector<bool>& falls = falls_[i];
       if (falls.empty()) falls = c_.claims[i].starts_below;
       for (size_t atom = 0; atom < falls.size(); ++atom) {
-        if (falls[atom]) falls[atom] = stepper.ObservedRate(c_.claims[i].first + atom).hi <= 0;
+        if (falls[atom]) falls[atom] = stepper.StaysBelow(c_.claims[i].first + atom);
       }
     }
   }

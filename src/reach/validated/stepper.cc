@@ -46,16 +46,12 @@ Stepper::Stepper(const Dynamics& dynamics, std::shared_ptr<Monomials> monomials,
 // Which branches hold on this box; what cannot be told is held at an interval.
 void Stepper::Decide(const interval::Box& box) {
   const Program& p = dynamics_.program;
-  for (const uint32_t k : p.kinks) branches_[k] = Branch::kEither;
   for (size_t i = 0; i < states_; ++i) wide_.SetVariable(i, 0, box[i]);
   for (size_t w = 0; w < dynamics_.inputs.size(); ++w) wide_.SetVariable(states_ + w, 0, dynamics_.inputs[w]);
-  if (!wide_.Compute(0, branches_, held_, true)) {
-    for (const uint32_t k : p.kinks) held_[k] = {};
-    return;
-  }
+  if (wide_.Decide(branches_, held_)) return;
   for (const uint32_t k : p.kinks) {
-    branches_[k] = wide_.BranchOf(k);
-    held_[k] = wide_.HullOf(k);
+    branches_[k] = Branch::kEither;
+    held_[k] = {};
   }
 }
 
@@ -182,7 +178,8 @@ bool Stepper::Try(const FlowSet& set, double h) {
                   rates_.begin() + static_cast<std::ptrdiff_t>(i * states_));
     Propagate(rates_, states_, h, transition_);
     // Inputs and held nodes push the state from its nominal course, at most this fast.
-    Eigen::VectorXd push = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(states_));
+    Eigen::VectorXd& push = push_;
+    push.setZero(static_cast<Eigen::Index>(states_));
     for (size_t i = 0; i < states_ && more; ++i) {
       double sum = 0;
       for (size_t v = states_; v < width; ++v) {
@@ -332,6 +329,81 @@ Interval Stepper::ObservedRate(size_t observed) {
   for (size_t j = 0; j < states_; ++j)
     sum = sum + observed_gradient_[observed * width + j] * (more ? wide_ : rest_).Of(p.outputs[j], 0);
   return sum;
+}
+
+bool Stepper::StaysBelow(size_t observed) {
+  if (!Observe()) return false;
+  if (ObservedRate(observed).hi <= 0) return true;
+  const Program& p = dynamics_.program;
+  const size_t width = p.variables.size() + sources_.size();
+  const size_t node = p.outputs[states_ + observed];
+  std::vector<double> slope(states_);
+  for (size_t v = 0; v < width; ++v) {
+    const Interval d = observed_gradient_[observed * width + v];
+    if (!d.IsPoint() || (v >= states_ && d.lo != 0)) return false;
+    if (v < states_) slope[v] = d.lo;
+  }
+  // g' as a polynomial in the symbols, by order: sum of slope_j f_j; and g itself.
+  const size_t count = models_.count();
+  std::vector<std::vector<double>> rate(order_, std::vector<double>(count));
+  double norm = 0;
+  double radius = 0;
+  double power = 1;
+  for (size_t k = 0; k < order_; ++k) {
+    for (size_t j = 0; j < states_; ++j) {
+      if (slope[j] == 0) continue;
+      const auto f = models_.At(p.outputs[j], k);
+      for (size_t m = 0; m < count; ++m) {
+        rate[k][m] += slope[j] * f.polynomial[m];
+        norm += std::fabs(slope[j] * f.polynomial[m]) * power;
+      }
+      radius += std::fabs(slope[j]) * f.radius * power;
+    }
+    power = Above(power * h_);
+  }
+  const auto g0 = models_.At(node, 0);
+  double along = 0;
+  double square = 0;
+  for (size_t m = 1; m < count; ++m) {
+    along += rate[0][m] * g0.polynomial[m];
+    square += g0.polynomial[m] * g0.polynomial[m];
+  }
+  const double r = square > 0 ? along / square : 0;
+  if (!std::isfinite(r)) return false;
+  // g' - r g over the step: polynomial part, monomial by monomial.
+  const Interval time{0, h_};
+  Interval sum = Interval::Point(0);
+  double up = 0;
+  for (size_t m = 0; m < count; ++m) {
+    Interval value = Interval::Point(0);
+    for (size_t k = order_; k-- > 0;) {
+      const double g = models_.At(node, k).polynomial[m];
+      value = value * time + (Interval::Point(rate[k][m]) - Interval::Point(r) * Interval::Point(g));
+    }
+    if (m == 0) {
+      sum = value;
+    } else {
+      up += monomials_->IsEven(m) ? std::fmax(0, value.hi) : Magnitude(value);
+    }
+  }
+  // Errors: roundings of the sums above, radii, what the series leave out, and how far courses are from nominal ones.
+  double error = radius + norm * Roundings(static_cast<double>(2 * states_ + 4));
+  power = 1;
+  for (size_t k = 0; k < order_; ++k) {
+    error += std::fabs(r) * models_.At(node, k).radius * power;
+    power = Above(power * h_);
+  }
+  // power = h^K: the last order of g, and the rest of both series.
+  error += power * (std::fabs(r) * (Magnitude(models_.Range(node, order_)) + h_ * Magnitude(rest_.Of(node, order_ + 1))));
+  for (size_t j = 0; j < states_; ++j) {
+    if (slope[j] == 0) continue;
+    double off = power * Magnitude(rest_.Of(p.outputs[j], order_)) + push_[static_cast<Eigen::Index>(j)];
+    for (size_t i = 0; i < states_; ++i)
+      off += Magnitude(rates_[j * states_ + i]) * drift_[static_cast<Eigen::Index>(i)];
+    off += std::fabs(r) * drift_[static_cast<Eigen::Index>(j)];
+    error += std::fabs(slope[j]) * off;
+  }
+  return (sum + Interval::Point(Above(up + error))).hi <= 0;
 }
 
 void Stepper::Finish(const FlowSet& set, FlowSet& next) {

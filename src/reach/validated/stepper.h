@@ -53,6 +53,9 @@ class Stepper {
   Interval Observed(size_t observed, double from, double to, bool tight);
   /// Encloses the derivative of an output during the step, for all inputs.
   Interval ObservedRate(size_t observed);
+  /// Does an output g that is not positive when the step begins stay so? Shown by g' <= r g along every course, for some
+  /// number r: then g(t) <= exp(r t) g(0). Only for outputs that are linear in the states, or fall anyway.
+  bool StaysBelow(size_t observed);
   /// The set at the end of the step.
   void Finish(const FlowSet& set, FlowSet& next);
   /// Where state i of the solution with these symbols lies at time t of the step, errors included: for
@@ -90,6 +93,7 @@ class Stepper {
   double h_ = 0;
   interval::Box during_;
   Eigen::VectorXd error_;  // at the start
+  Eigen::VectorXd push_;   // how fast inputs drive the state from its nominal course
   Eigen::VectorXd drift_;  // errors during the step
   std::vector<double> input_error_;
   std::vector<double> series_error_, degree_error_, linear_error_;

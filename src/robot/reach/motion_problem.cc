@@ -22,6 +22,14 @@ std::optional<Rational> Constant(const Arena& arena, std::optional<TermId> term)
   return arena.number(*term);
 }
 
+// Encloses a term without variables: bounds in degrees are no rational numbers.
+std::optional<Interval> ConstantRange(const Arena& arena, std::optional<TermId> term) {
+  if (!term) return std::nullopt;
+  auto program = reach::Compile(arena, {}, {*term});
+  if (!program.ok()) return std::nullopt;
+  return reach::ValuesOn(program.value(), {})[program.value().outputs[0]];
+}
+
 class Builder {
  public:
   Builder(const World& world, const Body& body, const MotionInstance& instance, Arena& arena)
@@ -31,20 +39,19 @@ class Builder {
     reach::Problem& p = out_.problem;
     p.name = fmt::format("{}: {}", body_.name.text, motion_.text);
     p.arena = &arena_;
-    // What does not move keeps its promises as long as it likes: the start says everything.
-    const bool rests = std::ranges::none_of(motion_.contract.modifies, [](bool m) { return m; });
-    if (!motion_.duration && !rests) return base::Error{"it may go on for ever: no tube covers that"};
+    out_.robot_states = body_.states.size();
+    rests_ = std::ranges::none_of(motion_.contract.modifies, [](bool m) { return m; });
     p.horizon = motion_.duration.value_or(Rational(1));
+    if (!motion_.duration && motion_.control && motion_.control->period) {
+      // Whole periods, about a second of them.
+      const auto period = Constant(arena_, motion_.control->period);
+      if (period && *period > Rational(0)) p.horizon = *period * ((Rational(1) / *period).Floor() + Rational(1));
+    }
     if (!(p.horizon > Rational(0))) return base::Error{"it takes no time at all"};
     if (auto wrong = States(); !wrong.empty()) return base::Error{wrong};
     if (auto wrong = Inputs(); !wrong.empty()) return base::Error{wrong};
     if (auto wrong = Start(); !wrong.empty()) return base::Error{wrong};
-    if (!motion_.duration) {
-      for (const TermId t : VariablesOf(arena_, {motion_.contract.during})) {
-        if (std::ranges::find(body_.states, t, &Variable::term) == body_.states.end())
-          return base::Error{"it may go on for ever, and what it promises is not about its state alone"};
-      }
-    }
+    if (auto wrong = ForEver(); !wrong.empty()) return base::Error{wrong};
     Claims();
     return std::move(out_);
   }
@@ -63,6 +70,18 @@ class Builder {
     p.rates.push_back(rate);
     out_.names.push_back(name);
     ranges_.push_back(variable);
+  }
+
+  bool UsesClock() const {
+    std::vector<TermId> terms{motion_.contract.pre, motion_.contract.assume, motion_.contract.during,
+                              motion_.contract.post};
+    for (const auto& rate : body_.derivatives) {
+      if (rate) terms.push_back(*rate);
+    }
+    if (motion_.control) {
+      for (const auto& [variable, value] : motion_.control->laws) terms.push_back(value);
+    }
+    return VariablesOf(arena_, terms).contains(world_.clock);
   }
 
   // Plant, controller memory, held inputs, clock.
@@ -100,7 +119,7 @@ class Builder {
     for (const Variable& v : body_.inputs) {
       if (Sampled(v.term)) Add(v.name.text, v.term, Zero(), nullptr);
     }
-    Add("clock", world_.clock, arena_.Number(arena_.Real(), Rational(1)), nullptr);
+    if (UsesClock()) Add("clock", world_.clock, arena_.Number(arena_.Real(), Rational(1)), nullptr);
     for (const MotionInstance::Unknown& u : motion_.unknowns) Add(u.name, u.term, Zero(), nullptr);
     for (const auto& [copy, state] : motion_.copies)
       Add(arena_.symbol(arena_.symbol_of(copy)).name, copy, Zero(), nullptr);
@@ -142,12 +161,11 @@ class Builder {
       const std::string& name = arena_.symbol(arena_.symbol_of(t)).name;
       const auto it = known.find(t);
       if (it == known.end()) return fmt::format("`{}` has no known value", name);
-      const auto least = Constant(arena_, it->second->least);
-      const auto most = Constant(arena_, it->second->most);
+      const auto least = ConstantRange(arena_, it->second->least);
+      const auto most = ConstantRange(arena_, it->second->most);
       if (!least || !most) return fmt::format("the input `{}` has no bounds", it->second->name.text);
-      p.inputs.push_back({t, {reach::Enclose(*least).lo, reach::Enclose(*most).hi}});
-      out_.assumed.push_back(
-          fmt::format("`{}` in [{:.6g}, {:.6g}]", name, least->ToDouble(), most->ToDouble()));
+      p.inputs.push_back({t, {least->lo, most->hi}});
+      out_.assumed.push_back(fmt::format("`{}` in [{:.6g}, {:.6g}]", name, least->lo, most->hi));
     }
     // The contract assumes more of them.
     if (motion_.contract.assume != arena_.True() && !p.inputs.empty()) {
@@ -239,6 +257,37 @@ class Builder {
     return "";
   }
 
+  // A motion without an end. What does not move keeps its promises as long as it likes: the start says everything. Else
+  // it must be back where it may begin after a while: then it can go on in the same way.
+  std::string ForEver() {
+    if (motion_.duration) return "";
+    reach::Problem& p = out_.problem;
+    std::vector<TermId> terms = p.rates;
+    if (p.controller) {
+      for (const auto& update : p.controller->updates) {
+        if (update) terms.push_back(*update);
+      }
+    }
+    terms.push_back(motion_.contract.during);
+    terms.push_back(motion_.contract.pre);
+    if (VariablesOf(arena_, terms).contains(world_.clock))
+      return "it may go on for ever, and what it does depends on the clock";
+    for (const TermId t : VariablesOf(arena_, {motion_.contract.during, motion_.contract.pre})) {
+      if (std::ranges::find(body_.states, t, &Variable::term) == body_.states.end())
+        return "it may go on for ever, and what it promises is not about its state alone";
+    }
+    if (rests_) return "";
+    std::vector<TermId> again{motion_.contract.pre};
+    for (const auto* list : {&body_.states, &body_.memory}) {
+      for (const Variable& v : *list) {
+        if (v.least) again.push_back(arena_.Le(*v.least, v.term));
+        if (v.most) again.push_back(arena_.Le(v.term, *v.most));
+      }
+    }
+    p.claims.push_back({"back where it may begin", arena_.And(again), p.horizon, p.horizon});
+    return "";
+  }
+
   void Claims() {
     reach::Problem& p = out_.problem;
     const Rational start(0);
@@ -266,6 +315,7 @@ class Builder {
   Arena& arena_;
   MotionProblem out_;
   std::vector<const Variable*> ranges_;
+  bool rests_ = false;
 };
 
 }  // namespace

@@ -34,6 +34,7 @@ struct MotionInstance {
 /// A problem, and what its states are called by people.
 struct MotionProblem {
   reach::Problem problem;
+  size_t robot_states = 0;              ///< the first ones: the robot's own, without memory, clock and the like
   std::vector<std::string> names;    ///< by state
   std::vector<std::string> assumed;  ///< what a proof of it rests on, for people
 };
