@@ -37,8 +37,9 @@ std::map<const choreo::Graph*, std::set<std::string>> ProvedMotions(Motion& moti
   return proved;
 }
 
-std::vector<std::string> Discharge(const LoadedKoord& koord, Session& session, const solve::cache::ProofCache& cache,
-                                   const std::string& file, std::vector<std::string>& assumed) {
+std::vector<std::string> Discharge(const LoadedKoord& koord, Session& session,
+                                   const solve::cache::ProofCache& cache, const std::string& file,
+                                   std::vector<std::string>& assumed) {
   std::vector<std::string> lines;
   if (koord.model.platforms.empty()) return lines;
   Platforms platforms;

@@ -193,7 +193,8 @@ std::string MotionSummary(const MotionReport& report, const diag::SourceSet& sou
   }
   if (!report.regions.found.empty())
     text += "regions that were found:\n" + RegionLines(report.regions, sources);
-  for (const std::string& a : choreo::AssumptionsOf(*report.graph, report.discharged, report.obligations, report.proofs))
+  for (const std::string& a :
+       choreo::AssumptionsOf(*report.graph, report.discharged, report.obligations, report.proofs))
     text += fmt::format("assumed: {}\n", a);
   if (!report.discharged.empty()) {
     text += fmt::format("proved by reachability: controllers keep the contracts of {}\n",
@@ -239,7 +240,8 @@ nlohmann::json ToJson(const MotionReport& report) {
           {"problems", report.proofs.problems},
           {"regions", regions},
           {"proved_by_reachability", report.discharged},
-          {"assumed", choreo::AssumptionsOf(*report.graph, report.discharged, report.obligations, report.proofs)}};
+          {"assumed",
+           choreo::AssumptionsOf(*report.graph, report.discharged, report.obligations, report.proofs)}};
 }
 
 }  // namespace rondo::driver

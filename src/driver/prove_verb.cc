@@ -104,7 +104,8 @@ int Run(const Options& options) {
     reached = SearchWitnesses(model, report, options.reach, options.file, options.spec, exploration,
                               session.diagnostics);
   }
-  const std::vector<std::string> discharged = Discharge(*loaded, session, cache, options.file, report.assumed);
+  const std::vector<std::string> discharged =
+      Discharge(*loaded, session, cache, options.file, report.assumed);
   const int status = StatusOf(report);
   if (options.json) {
     nlohmann::json json = ProveJson(session, options.file, &report, status);

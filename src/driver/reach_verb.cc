@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "driver/discharge.h"
 #include "driver/exit_status.h"
@@ -112,7 +113,8 @@ class Run {
     if (options_.json) {
       PrintJson({{"command", "reach"}, {"status", status}, {"contracts", list}});
     } else {
-      Print(fmt::format("seed {}; starts drawn uniformly from initial boxes; nothing is proved\nexit {}\n", sampling.seed, status));
+      Print(fmt::format("seed {}; starts drawn uniformly from initial boxes; nothing is proved\nexit {}\n",
+                        sampling.seed, status));
     }
     return status;
   }
@@ -134,14 +136,17 @@ class Run {
     }
     if (!results_.empty()) {
       size_t proved = 0;
+      std::set<std::string> assumed;
       for (const ContractResult& r : results_) {
         if (VerdictOf(r) != "proved") continue;
-        if (!r.model.empty()) Print(fmt::format("{}: proved of `{}`\n", r.made.problem.name, r.model));
-        for (const std::string& d : r.domain) Print(fmt::format("  for {}\n", d));
-        for (const std::string& a : r.made.assumed) Print(fmt::format("  assumed: {}\n", a));
+        ++proved;
+        if (!r.model.empty())
+          Print(fmt::format("{}: proved of `{}`, for {}\n", r.made.problem.name, r.model,
+                            fmt::join(r.domain, "; ")));
+        assumed.insert(r.made.assumed.begin(), r.made.assumed.end());
       }
-      for (const ContractResult& r : results_) proved += VerdictOf(r) == "proved" ? 1 : 0;
-      Print(fmt::format("\n{} of {} contract{} proved\n", proved, results_.size(),
+      if (!assumed.empty()) Print(fmt::format("assumed: {}\n", fmt::join(assumed, "; ")));
+      Print(fmt::format("{} of {} contract{} proved\n", proved, results_.size(),
                         results_.size() == 1 ? "" : "s"));
     }
     if (status != kEstablished) Print(fmt::format("exit {}\n", status));
@@ -178,8 +183,9 @@ void AddReachVerb(CLI::App& app, int& status) {
       ->check(CLI::Range(size_t{1}, size_t{100'000'000}));
   verb->add_option("--confidence", options->sampling.confidence, "of --statistical; default: 0.999")
       ->check(CLI::Range(0.5, 0.999999999));
-  verb->add_option("--simulator", options->sampling.simulator,
-                   "of --statistical: a command that simulates the robot instead of its model (docs/reach.md)");
+  verb->add_option(
+      "--simulator", options->sampling.simulator,
+      "of --statistical: a command that simulates the robot instead of its model (docs/reach.md)");
   verb->add_flag("--no-cache", options->no_cache, "do not remember for `rondo prove` what is proved");
   verb->add_flag("--json", options->json, "the result as JSON on standard output");
   verb->footer(

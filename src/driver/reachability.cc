@@ -17,11 +17,6 @@ using diag::Kind;
 
 namespace {
 
-struct Scale {
-  double size;
-  std::string text;
-};
-
 std::string StateTable(const ContractResult& r, const std::vector<double>& state) {
   std::string text;
   for (size_t i = 0; i < state.size(); ++i) {
@@ -62,6 +57,8 @@ std::vector<ContractResult> ContractsOf(Motion& motion, Session& session) {
       instance.contract = i.contract;
       instance.control = i.control;
       instance.duration = i.duration.most;
+      instance.least = i.duration.least;
+      instance.interruptible = i.duration.interruptible;
       add(*graph.world, graph.BodyOf(i.robot), instance);
     }
   }
@@ -159,7 +156,7 @@ void ReportContract(const ContractResult& r, diag::Diagnostics& diagnostics) {
         .Note(r.impossible);
     return;
   }
-  if (!r.outcome || r.same_as) return;
+  if (!r.outcome) return;
   if (const auto* refuted = std::get_if<reach::Refuted>(&*r.outcome)) {
     const reach::Violation& v = refuted->violation;
     const std::string& claim = ProblemOf(r).claims[v.claim].name;
@@ -168,7 +165,8 @@ void ReportContract(const ContractResult& r, diag::Diagnostics& diagnostics) {
         fmt::format("`{}` breaks its contract: `{}` fails after {:.4g} s", name, claim, v.time));
     report.Note(fmt::format("start: {}", StateTable(r, refuted->course.start)));
     report.Note(fmt::format("there:  {}", StateTable(r, v.state)));
-    report.Note(fmt::format("it fails by {:.3g}", v.miss));
+    report.Note(v.miss < 1e299 ? fmt::format("it fails by {:.3g}", v.miss)
+                               : std::string("a term of it has no value there"));
     report.Note(refuted->certain
                     ? "the exact solution from this start was enclosed: it does break the contract"
                     : "a simulation, not enclosed: rounding could matter");
@@ -180,26 +178,22 @@ void ReportContract(const ContractResult& r, diag::Diagnostics& diagnostics) {
     report.Note(open->reason);
     if (open->closest) {
       report.Note(fmt::format(
-          "closest approach of {} sampled trajectories: `{}` held by {:.3g} after {:.4g} s", "the",
+          "closest approach of the sampled trajectories: `{}` held by {:.3g} after {:.4g} s",
           ProblemOf(r).claims[open->closest->claim].name, -open->closest->miss, open->closest->time));
     }
   }
 }
 
 std::string ContractTable(const std::vector<ContractResult>& results) {
-  std::string text =
-      fmt::format("{:<9} {:>9} {:>6} {:>7}  {}\n", "verdict", "time", "parts", "steps", "contract");
+  std::string text = fmt::format("{:<9} {:>9} {:>6}  {}\n", "verdict", "time", "parts", "contract");
   for (const ContractResult& r : results) {
     std::string parts;
-    std::string steps;
-    if (r.outcome && !r.same_as) {
-      if (const auto* proved = std::get_if<reach::Proved>(&*r.outcome)) {
+    if (r.outcome) {
+      if (const auto* proved = std::get_if<reach::Proved>(&*r.outcome))
         parts = fmt::format("{}", proved->leaves.size());
-        steps = fmt::format("{}", proved->steps);
-      }
     }
-    const std::string time = r.same_as ? "as above" : fmt::format("{:.3f} s", r.seconds);
-    text += fmt::format("{:<9} {:>9} {:>6} {:>7}  {}\n", VerdictOf(r), time, parts, steps, ProblemOf(r).name);
+    text += fmt::format("{:<9} {:>9} {:>6}  {}\n", VerdictOf(r), fmt::format("{:.3f} s", r.seconds), parts,
+                        ProblemOf(r).name);
   }
   return text;
 }

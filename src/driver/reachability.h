@@ -17,13 +17,12 @@ struct ContractResult {
   robot::MotionProblem made;
   diag::Span span;                        ///< of the motion
   std::string impossible;                 ///< why there is no problem to decide, if there is none
-  std::optional<size_t> same_as;          ///< the same problem as an earlier one, up to symmetry
   std::optional<reach::Outcome> outcome;  ///< nothing: not begun
   double seconds = 0;
-  std::vector<std::string> domain;  ///< what else a proof is limited to
-  const choreo::Graph* graph = nullptr;    ///< of a choreography's motion
-  std::string motion;                      ///< `Type.Motion`
-  std::string model;                ///< of a port: by which robot type
+  std::vector<std::string> domain;       ///< what else a proof is limited to
+  const choreo::Graph* graph = nullptr;  ///< of a choreography's motion
+  std::string motion;                    ///< `Type.Motion`
+  std::string model;                     ///< of a port: by which robot type
 };
 
 /// The contracts of the motions that choreographies use; without any, of all robot types, as far as they have

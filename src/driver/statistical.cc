@@ -43,14 +43,16 @@ base::Result<reach::Judge> OfModel(const reach::Problem& problem, double dt, siz
   auto made = reach::BatchJudge::Of(problem);
   if (!made.ok()) return made.error();
   auto judge = std::make_shared<reach::BatchJudge>(std::move(made).value());
-  return reach::Judge([judge, dt, steps](std::span<const std::vector<double>> starts, std::span<bool> failed) {
-    judge->Run(starts, dt, steps, failed);
-    return base::Result<bool>(true);
-  });
+  return reach::Judge(
+      [judge, dt, steps](std::span<const std::vector<double>> starts, std::span<bool> failed) {
+        judge->Run(starts, dt, steps, failed);
+        return base::Result<bool>(true);
+      });
 }
 
-base::Result<reach::Judge> OfProcess(const ContractResult& contract, const StatisticalOptions& options, double dt,
-                                     size_t steps, std::vector<std::unique_ptr<reach::Simulator>>& simulators) {
+base::Result<reach::Judge> OfProcess(const ContractResult& contract, const StatisticalOptions& options,
+                                     double dt, size_t steps,
+                                     std::vector<std::unique_ptr<reach::Simulator>>& simulators) {
   const reach::Problem& problem = contract.made.problem;
   auto process = reach::ProcessSimulator(options.simulator, contract.made.robot_states);
   if (!process.ok()) return process.error();
@@ -83,7 +85,8 @@ base::Result<reach::Judge> OfProcess(const ContractResult& contract, const Stati
 
 }  // namespace
 
-Statistical Sample(const ContractResult& contract, const StatisticalOptions& options, const base::StopToken& stop) {
+Statistical Sample(const ContractResult& contract, const StatisticalOptions& options,
+                   const base::StopToken& stop) {
   Statistical result;
   const auto begin = std::chrono::steady_clock::now();
   const reach::Problem& problem = contract.made.problem;
@@ -124,8 +127,9 @@ Statistical Sample(const ContractResult& contract, const StatisticalOptions& opt
     size_t bit = 0;
     for (const interval::Interval& side : problem.initial) {
       const bool free = side.Width() > 1e-13;
-      start.push_back(!free ? side.Middle() : (corner >> (bit % 6) & 1) != 0 ? side.hi - 1e-9 * side.Width()
-                                                                              : side.lo + 1e-9 * side.Width());
+      start.push_back(!free                            ? side.Middle()
+                      : (corner >> (bit % 6) & 1) != 0 ? side.hi - 1e-9 * side.Width()
+                                                       : side.lo + 1e-9 * side.Width());
       bit += free ? 1 : 0;
     }
     if (bit < 6 && corner >= size_t{1} << bit) break;
@@ -144,15 +148,19 @@ std::string StatisticalLine(const ContractResult& contract, const Statistical& s
   const std::string& name = contract.made.problem.name;
   if (!s.trouble.empty()) return fmt::format("unknown      {}: {}\n", name, s.trouble);
   std::string text = fmt::format(
-      "statistical  {}: {} of {} runs fail; with confidence {:g} at most {:.4g} of all starts do ({:.2f} s)\n", name,
-      s.failures, s.runs, s.confidence, s.epsilon, s.seconds);
+      "statistical  {}: {} of {} runs fail; with confidence {:g} at most {:.4g} of all starts do ({:.2f} "
+      "s)\n",
+      name, s.failures, s.runs, s.confidence, s.epsilon, s.seconds);
   if (s.corner_failures > 0)
-    text += fmt::format("             {} of {} corners of the initial box fail\n", s.corner_failures, s.corners);
+    text +=
+        fmt::format("             {} of {} corners of the initial box fail\n", s.corner_failures, s.corners);
   return text;
 }
 
-nlohmann::json ToJson(const ContractResult& contract, const Statistical& s, const StatisticalOptions& options) {
-  nlohmann::json out{{"contract", contract.made.problem.name}, {"verdict", s.trouble.empty() ? "statistical" : "unknown"}};
+nlohmann::json ToJson(const ContractResult& contract, const Statistical& s,
+                      const StatisticalOptions& options) {
+  nlohmann::json out{{"contract", contract.made.problem.name},
+                     {"verdict", s.trouble.empty() ? "statistical" : "unknown"}};
   if (!s.trouble.empty()) {
     out["reason"] = s.trouble;
     return out;

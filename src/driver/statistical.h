@@ -5,12 +5,12 @@
 namespace rondo::driver {
 
 struct StatisticalOptions {
-  size_t runs = 6905;         ///< that must not fail
+  size_t runs = 6905;  ///< that must not fail
   double confidence = 0.999;
   uint64_t seed = 1;
   unsigned jobs = 0;
-  double dt = 0.02;           ///< seconds between the instants that are looked at
-  std::string simulator;      ///< a command; empty: the model itself
+  double dt = 0.02;       ///< seconds between the instants that are looked at
+  std::string simulator;  ///< a command; empty: the model itself
 };
 
 /// What samples say about one contract: never a proof.
@@ -25,9 +25,11 @@ struct Statistical {
 
 /// Draws starts uniformly from the initial box (those that `pre` excludes count as good), inputs
 /// at random, and looks at the claims every `dt`.
-Statistical Sample(const ContractResult& contract, const StatisticalOptions& options, const base::StopToken& stop);
+Statistical Sample(const ContractResult& contract, const StatisticalOptions& options,
+                   const base::StopToken& stop);
 
 std::string StatisticalLine(const ContractResult& contract, const Statistical& s);
-nlohmann::json ToJson(const ContractResult& contract, const Statistical& s, const StatisticalOptions& options);
+nlohmann::json ToJson(const ContractResult& contract, const Statistical& s,
+                      const StatisticalOptions& options);
 
 }  // namespace rondo::driver

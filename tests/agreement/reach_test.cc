@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <random>
@@ -71,7 +72,7 @@ const reach::Leaf* LeafOf(const reach::Proved& proved, const std::vector<double>
 class Audit : public testing::TestWithParam<std::string> {};
 
 TEST_P(Audit, NoTrajectoryLeavesItsTube) {
-  const auto loaded = Load(fmt::format("examples/reach/{}.rondo", GetParam()));
+  const auto loaded = Load(GetParam());
   ASSERT_FALSE(loaded->contracts.empty());
   for (driver::ContractResult& contract : loaded->contracts) {
     const reach::Problem& problem = contract.made.problem;
@@ -129,16 +130,17 @@ TEST_P(Audit, NoTrajectoryLeavesItsTube) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Examples, Audit, testing::ValuesIn([] {
-                           std::vector<std::string> names;
-                           for (const auto& entry : std::filesystem::directory_iterator("examples/reach")) {
-                             if (entry.path().extension() == ".rondo")
-                               names.push_back(entry.path().stem().string());
-                           }
-                           std::sort(names.begin(), names.end());
-                           return names;
-                         }()),
-                         [](const auto& info) { return info.param; });
+std::vector<std::string> Files() {
+  std::vector<std::string> files{"models/car.rondo", "models/driven.rondo", "models/quadrotor.rondo"};
+  for (const auto& entry : std::filesystem::directory_iterator("examples/reach")) {
+    if (entry.path().extension() == ".rondo") files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, Audit, testing::ValuesIn(Files()),
+                         [](const auto& info) { return std::filesystem::path(info.param).stem().string(); });
 
 // Much sharper than boxes: at each step the polynomials say where the trajectory with these symbols is, up to
 // an error.

@@ -217,8 +217,7 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
 }
 
 std::vector<std::string> AssumptionsOf(const Graph& graph, const std::set<std::string>& proved,
-                                       const Obligations& obligations,
-                                       const Proofs& proofs) {
+                                       const Obligations& obligations, const Proofs& proofs) {
   std::vector<std::string> result;
   std::set<std::string> motions;
   for (const Instance& i : graph.instances)

@@ -17,8 +17,7 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
 /// What a proof rests on, in sentences: contracts of motions, ranges, what controllers have to bridge.
 /// `proved`: motions (`Type.Motion`) whose contracts are proved.
 std::vector<std::string> AssumptionsOf(const Graph& graph, const std::set<std::string>& proved,
-                                       const Obligations& obligations,
-                                       const Proofs& proofs);
+                                       const Obligations& obligations, const Proofs& proofs);
 
 /// "arm.a = 130 deg", for each variable of a witness, in the order of the world.
 std::vector<std::string> StateOf(const Graph& graph, const Witness& witness);

@@ -40,8 +40,15 @@ class Builder {
     }
     for (size_t v = 0; v < model_.variables.size(); ++v) Fill(v, robot, settled, end);
     const TermId period = executor_.Value(platform_.period, model_.types.real(), settled, robot);
-    for (Theory::Promise& promise : theory.Promises(settled, end, robot))
+    for (const Theory::Promise& promise : theory.Promises(settled, end, robot))
       Add(promise, settled, period, theory, all);
+    // Without a condition: true at every moment.
+    for (const AssumeDef* def : model_.assumptions) {
+      if (def->kind != AssumeKind::kPort || !HoldsAlways(model_, *def) || def->module != platform_.module)
+        continue;
+      const TermId always = executor_.Specification(def->body, end, robot, nullptr, {});
+      Add({def, AssumptionName(model_, *def), arena_.True(), always}, settled, period, theory, all);
+    }
     return all;
   }
 
@@ -134,7 +141,8 @@ class Builder {
       if (!v.least || !v.most) return fmt::format("the input `{}` has no bounds", v.name.text);
       instance.unknowns.push_back({v.name.text, v.term, *v.least, *v.most});
       if (arena_.IsNumber(*v.least) && arena_.IsNumber(*v.most)) {
-        out.domain.push_back(fmt::format("{} in [{:.6g}, {:.6g}]", v.name.text, arena_.number(*v.least).ToDouble(),
+        out.domain.push_back(fmt::format("{} in [{:.6g}, {:.6g}]", v.name.text,
+                                         arena_.number(*v.least).ToDouble(),
                                          arena_.number(*v.most).ToDouble()));
       }
     }

@@ -124,7 +124,8 @@ void BatchJudge::Judge(double time, std::span<const Lanes> x, std::span<bool> fa
   }
 }
 
-void BatchJudge::Run(std::span<const std::vector<double>> starts, double dt, size_t steps, std::span<bool> failed) {
+void BatchJudge::Run(std::span<const std::vector<double>> starts, double dt, size_t steps,
+                     std::span<bool> failed) {
   const size_t n = problem_->states.size();
   const size_t inputs = problem_->inputs.size();
   std::vector<Lanes> x(n + inputs), at(n + inputs), next(n);
@@ -153,14 +154,14 @@ void BatchJudge::Run(std::span<const std::vector<double>> starts, double dt, siz
   std::array<bool, kLanes> excluded{};
   for (size_t l = 0; l < failed.size(); ++l) {
     failed[l] = false;
-    excluded[l] = assumption_.Miss([&](size_t atom) {
-      return assumed_.values[assumed_.program.outputs[atom]][l];
-    }) > 0;
+    excluded[l] =
+        assumption_.Miss([&](size_t atom) { return assumed_.values[assumed_.program.outputs[atom]][l]; }) > 0;
   }
   const double period = problem_->controller ? problem_->controller->period.ToDouble() : 0;
   size_t sample = 0;
+  const size_t samples = Samples(*problem_);
   const auto control = [&](double t) {
-    if (period <= 0 || t < period * static_cast<double>(sample) - 1e-9) return;
+    if (sample >= samples || t < period * static_cast<double>(sample) - 1e-9) return;
     ++sample;
     Evaluate(updates_, x);
     for (size_t i = 0; i < n; ++i) next[i] = updates_.values[updates_.program.outputs[i]];
@@ -178,9 +179,11 @@ void BatchJudge::Run(std::span<const std::vector<double>> starts, double dt, siz
       for (size_t i = 0; i < n; ++i) k[s][i] = rates_.values[rates_.program.outputs[i]];
     }
     for (size_t i = 0; i < n; ++i) {
-      for (size_t l = 0; l < kLanes; ++l) x[i][l] += h / 6 * (k[0][i][l] + 2 * k[1][i][l] + 2 * k[2][i][l] + k[3][i][l]);
+      for (size_t l = 0; l < kLanes; ++l)
+        x[i][l] += h / 6 * (k[0][i][l] + 2 * k[1][i][l] + 2 * k[2][i][l] + k[3][i][l]);
     }
   };
+  control(0);
   Judge(0, x, failed);
   const size_t every = std::max<size_t>(1, steps / 16);
   for (size_t step = 0; step < steps; ++step) {
@@ -189,7 +192,7 @@ void BatchJudge::Run(std::span<const std::vector<double>> starts, double dt, siz
     const double end = dt * static_cast<double>(step + 1);
     while (t < end - 1e-9) {
       control(t);
-      const double until = period > 0 ? std::min(end, period * static_cast<double>(sample)) : end;
+      const double until = sample < samples ? std::min(end, period * static_cast<double>(sample)) : end;
       integrate(until - t);
       t = until;
     }

@@ -10,8 +10,9 @@
 
 namespace rondo::reach {
 
-/// Runs eight starts of a problem at once, by fourth-order Runge-Kutta, and says which of them break a claim at one of the instants 0, dt, 2 dt, ... Inputs are drawn anew at
-/// sixteen instants, uniformly in their bounds, by the start: equal starts have equal runs. Not rigorous.
+/// Runs eight starts of a problem at once, by fourth-order Runge-Kutta, and says which of them break a claim
+/// at one of the instants 0, dt, 2 dt, ... Inputs are drawn anew at sixteen instants, uniformly in their
+/// bounds, by the start: equal starts have equal runs. Not rigorous.
 class BatchJudge {
  public:
   static constexpr size_t kLanes = 8;
@@ -19,8 +20,8 @@ class BatchJudge {
   /// @error if the problem cannot be evaluated.
   static base::Result<BatchJudge> Of(const Problem& problem);
 
-  /// failed[i] for each of at most kLanes starts; a start that is not assumed cannot fail, a run that is not finite
-  /// does.
+  /// failed[i] for each of at most kLanes starts; a start that is not assumed cannot fail, a run that is not
+  /// finite does.
   void Run(std::span<const std::vector<double>> starts, double dt, size_t steps, std::span<bool> failed);
 
  private:

@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,13 +18,13 @@ namespace {
 
 class Process final : public Simulator {
  public:
-  Process(pid_t child, FILE* in, FILE* out, size_t dimension)
+  Process(pid_t child, FILE* in, int out, size_t dimension)
       : child_(child), in_(in), out_(out), dimension_(dimension) {}
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
   ~Process() override {
     std::fclose(in_);
-    std::fclose(out_);
+    ::close(out_);
     ::kill(child_, SIGTERM);
     int status = 0;
     ::waitpid(child_, &status, 0);
@@ -39,11 +40,16 @@ class Process final : public Simulator {
     Trace trace;
     trace.reserve((steps + 1) * dimension_);
     for (size_t row = 0; row <= steps; ++row) {
+      auto line = Line();
+      if (!line.ok())
+        return base::Error{fmt::format("{}, in line {} of a run", line.error().message, row + 1)};
+      const char* at = line.value().c_str();
       for (size_t i = 0; i < dimension_; ++i) {
-        double x = 0;
-        if (std::fscanf(out_, "%lf", &x) != 1)
-          return base::Error{fmt::format("the simulator ended, or wrote no number, in line {} of a run", row + 1)};
-        if (!std::isfinite(x)) return base::Error{fmt::format("a number is not finite in line {} of a run", row + 1)};
+        char* end = nullptr;
+        const double x = std::strtod(at, &end);
+        if (end == at || !std::isfinite(x))
+          return base::Error{fmt::format("line {} of a run has fewer than {} numbers", row + 1, dimension_)};
+        at = end;
         trace.push_back(x);
       }
     }
@@ -51,9 +57,27 @@ class Process final : public Simulator {
   }
 
  private:
+  // Up to the next line end; a program that says nothing for ten seconds will not.
+  base::Result<std::string> Line() {
+    while (true) {
+      if (const size_t end = read_.find('\n'); end != std::string::npos) {
+        std::string line = read_.substr(0, end);
+        read_.erase(0, end + 1);
+        return line;
+      }
+      pollfd ready{out_, POLLIN, 0};
+      if (::poll(&ready, 1, 10'000) <= 0) return base::Error{"the simulator does not answer"};
+      char chunk[4096];
+      const ssize_t got = ::read(out_, chunk, sizeof chunk);
+      if (got <= 0) return base::Error{"the simulator has ended"};
+      read_.append(chunk, static_cast<size_t>(got));
+    }
+  }
+
   pid_t child_;
   FILE* in_;
-  FILE* out_;
+  int out_;
+  std::string read_;
   size_t dimension_;
 };
 
@@ -62,7 +86,8 @@ class Process final : public Simulator {
 base::Result<std::unique_ptr<Simulator>> ProcessSimulator(const std::string& command, size_t dimension) {
   int to[2];
   int from[2];
-  if (::pipe2(to, O_CLOEXEC) != 0) return base::Error{fmt::format("cannot start `{}`: {}", command, std::strerror(errno))};
+  if (::pipe2(to, O_CLOEXEC) != 0)
+    return base::Error{fmt::format("cannot start `{}`: {}", command, std::strerror(errno))};
   if (::pipe2(from, O_CLOEXEC) != 0) {
     ::close(to[0]);
     ::close(to[1]);
@@ -83,7 +108,7 @@ base::Result<std::unique_ptr<Simulator>> ProcessSimulator(const std::string& com
     return base::Error{fmt::format("cannot start `{}`: {}", command, std::strerror(errno))};
   }
   return std::unique_ptr<Simulator>(
-      std::make_unique<Process>(child, ::fdopen(to[1], "w"), ::fdopen(from[0], "r"), dimension));
+      std::make_unique<Process>(child, ::fdopen(to[1], "w"), from[0], dimension));
 }
 
 }  // namespace rondo::reach

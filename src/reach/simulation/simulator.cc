@@ -25,8 +25,9 @@ class ModelSimulator final : public Simulator {
     const auto keep = [&] { trace.insert(trace.end(), x.begin(), x.end()); };
     const double period = problem_.controller ? problem_.controller->period.ToDouble() : 0;
     size_t sample = 0;
+    const size_t samples = Samples(problem_);
     const auto control = [&](double t) {
-      if (period <= 0 || t < period * static_cast<double>(sample) - 1e-9) return;
+      if (sample >= samples || t < period * static_cast<double>(sample) - 1e-9) return;
       ++sample;
       std::copy(x.begin(), x.end(), at.begin());
       update(at, next);
@@ -47,7 +48,7 @@ class ModelSimulator final : public Simulator {
       while (t < end - 1e-9) {
         control(t);
         double until = end;
-        if (period > 0) until = std::min(until, period * static_cast<double>(sample));
+        if (sample < samples) until = std::min(until, period * static_cast<double>(sample));
         for (size_t s = 0; s < substeps_; ++s) integrate((until - t) / static_cast<double>(substeps_));
         t = until;
       }

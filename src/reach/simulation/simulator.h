@@ -27,14 +27,15 @@ class Simulator {
   virtual base::Result<Trace> Run(std::span<const double> start, double dt, size_t steps) = 0;
 };
 
-/// A problem as a simulator: fourth-order Runge-Kutta with `substeps` in each step, inputs in the middle of their
-/// bounds. Many of them may run at once.
+/// A problem as a simulator: fourth-order Runge-Kutta with `substeps` in each step, inputs in the middle of
+/// their bounds. Many of them may run at once.
 ///
 /// @error if the problem cannot be evaluated.
 base::Result<std::unique_ptr<Simulator>> SimulatorOf(const Problem& problem, size_t substeps = 1);
 
-/// A program of the user's. For each run one line is written to its standard input: the number of steps, dt, and the
-/// start; it answers with steps + 1 lines, the state at each instant. It is started once and ends when its input does.
+/// A program of the user's. For each run one line is written to its standard input: the number of steps, dt,
+/// and the start; it answers with steps + 1 lines, the state at each instant. It is started once and ends
+/// when its input does.
 ///
 /// @error if it cannot be started.
 base::Result<std::unique_ptr<Simulator>> ProcessSimulator(const std::string& command, size_t dimension);

@@ -28,7 +28,8 @@ std::vector<double> UpperHull(const std::vector<double>& time, const std::vector
     while (hull.size() >= 2) {
       const size_t a = hull[hull.size() - 2];
       const size_t b = hull.back();
-      const double cross = (time[b] - time[a]) * (value[i] - value[a]) - (value[b] - value[a]) * (time[i] - time[a]);
+      const double cross =
+          (time[b] - time[a]) * (value[i] - value[a]) - (value[b] - value[a]) * (time[i] - time[a]);
       if (cross < 0) break;
       hull.pop_back();
     }
@@ -51,7 +52,8 @@ std::vector<double> UpperHull(const std::vector<double>& time, const std::vector
 
 }  // namespace
 
-base::Result<SampledTube> Learn(Simulator& simulator, const interval::Box& initial, const LearnOptions& options) {
+base::Result<SampledTube> Learn(Simulator& simulator, const interval::Box& initial,
+                                const LearnOptions& options) {
   const size_t n = initial.size();
   std::vector<double> centre, radius;
   for (const interval::Interval& side : initial) {
@@ -73,7 +75,8 @@ base::Result<SampledTube> Learn(Simulator& simulator, const interval::Box& initi
     }
     for (size_t k = 0; k < 64; ++k) {
       std::vector<double> corner = centre;
-      for (size_t i = 0; i < n; ++i) corner[i] += ((n <= 6 ? k >> i : random()) & 1) != 0 ? radius[i] : -radius[i];
+      for (size_t i = 0; i < n; ++i)
+        corner[i] += ((n <= 6 ? k >> i : random()) & 1) != 0 ? radius[i] : -radius[i];
       if (n > 6 || k < (size_t{1} << n)) starts.push_back(corner);
     }
   }
@@ -106,7 +109,7 @@ base::Result<SampledTube> Learn(Simulator& simulator, const interval::Box& initi
       value[k] = std::log(most);
     }
     const std::vector<double> hull = UpperHull(time, value);
-    for (size_t k = 0; k <= options.steps; ++k) width[i][k] = unit * std::exp(hull[k]);
+    for (size_t k = 0; k <= options.steps; ++k) width[i][k] = unit * std::exp(hull[k]) * (1 + 1e-9);
   }
   SampledTube tube;
   tube.dt = options.dt;
@@ -134,15 +137,17 @@ base::Result<SampledTube> Learn(Simulator& simulator, const interval::Box& initi
 
 double ClopperPearson(size_t failures, size_t runs, double confidence) {
   if (runs == 0 || failures >= runs) return 1;
-  return boost::math::ibeta_inv(static_cast<double>(failures) + 1, static_cast<double>(runs - failures), confidence);
+  return boost::math::ibeta_inv(static_cast<double>(failures) + 1, static_cast<double>(runs - failures),
+                                confidence);
 }
 
 size_t RunsNeeded(double epsilon, double confidence) {
   return static_cast<size_t>(std::ceil(std::log(1 - confidence) / std::log1p(-epsilon)));
 }
 
-base::Result<Calibration> Calibrate(std::span<const Judge> judges, const interval::Box& initial, size_t runs, size_t group,
-                                    double confidence, uint64_t seed, const base::StopToken& stop) {
+base::Result<Calibration> Calibrate(std::span<const Judge> judges, const interval::Box& initial, size_t runs,
+                                    size_t group, double confidence, uint64_t seed,
+                                    const base::StopToken& stop) {
   // All starts come from one stream, whatever the number of threads.
   std::mt19937_64 random(seed);
   std::vector<std::vector<double>> starts;
@@ -160,8 +165,9 @@ base::Result<Calibration> Calibrate(std::span<const Judge> judges, const interva
       const size_t first = g * group;
       const size_t count = std::min(group, runs - first);
       const bool stopped = stop.StopRequested();
-      const auto judged = stopped ? base::Result<bool>(base::Error{"stopped"})
-                                  : judges[j](std::span(starts).subspan(first, count), std::span(failed.get(), count));
+      const auto judged =
+          stopped ? base::Result<bool>(base::Error{"stopped"})
+                  : judges[j](std::span(starts).subspan(first, count), std::span(failed.get(), count));
       const std::scoped_lock lock(mutex);
       if (!judged.ok()) {
         trouble = judged.error().message;

@@ -9,15 +9,16 @@
 
 namespace rondo::reach {
 
-/// A tube learned from runs: around the run from the centre, by how much runs from other starts were apart from it.
-/// Boxes for each step [k dt, (k + 1) dt]. Not guaranteed to hold anything.
+/// A tube learned from runs: around the run from the centre, by how much runs from other starts were apart
+/// from it. Boxes for each step [k dt, (k + 1) dt]. Not guaranteed to hold anything.
 struct SampledTube {
   double dt = 0;
   std::vector<interval::Box> steps;
 };
 
 enum class Learning : uint8_t {
-  /// Verse's formula, for comparison: ten runs from points at random, the upper convex hull of log-sensitivities.
+  /// Verse's formula, for comparison: ten runs from points at random, the upper convex hull of
+  /// log-sensitivities.
   kCompat,
   /// The same with runs from corners and centres of faces, too, and slack between samples.
   kCareful,
@@ -33,10 +34,11 @@ struct LearnOptions {
 
 /// @error of a run.
 /// @source Verse (CAV 2023), DryVR (CAV 2017): piecewise exponential discrepancy.
-base::Result<SampledTube> Learn(Simulator& simulator, const interval::Box& initial, const LearnOptions& options);
+base::Result<SampledTube> Learn(Simulator& simulator, const interval::Box& initial,
+                                const LearnOptions& options);
 
-/// At least the probability that a start leaves the property, with the stated confidence, after `failures` of `runs`
-/// independent runs failed: the exact one-sided bound of Clopper and Pearson.
+/// At least the probability that a start leaves the property, with the stated confidence, after `failures` of
+/// `runs` independent runs failed: the exact one-sided bound of Clopper and Pearson.
 double ClopperPearson(size_t failures, size_t runs, double confidence);
 /// How many runs without failure show that the probability of failure is below `epsilon`.
 size_t RunsNeeded(double epsilon, double confidence);
@@ -51,14 +53,16 @@ struct Calibration {
 };
 
 /// Judges a group of starts: failed[i] says whether the run from starts[i] does not do what it should.
-using Judge = std::function<base::Result<bool>(std::span<const std::vector<double>> starts, std::span<bool> failed)>;
+using Judge =
+    std::function<base::Result<bool>(std::span<const std::vector<double>> starts, std::span<bool> failed)>;
 
-/// Runs from independent starts, uniform in `initial`, judged in groups of at most `group`. Each judge runs in a thread
-/// of its own.
+/// Runs from independent starts, uniform in `initial`, judged in groups of at most `group`. Each judge runs
+/// in a thread of its own.
 ///
 /// @error of a judge.
-base::Result<Calibration> Calibrate(std::span<const Judge> judges, const interval::Box& initial, size_t runs, size_t group,
-                                    double confidence, uint64_t seed, const base::StopToken& stop);
+base::Result<Calibration> Calibrate(std::span<const Judge> judges, const interval::Box& initial, size_t runs,
+                                    size_t group, double confidence, uint64_t seed,
+                                    const base::StopToken& stop);
 
 /// Does the trace stay in the tube at all sampled instants?
 bool Inside(const SampledTube& tube, const Trace& trace);

@@ -14,14 +14,19 @@ using interval::operator/;
 namespace {
 
 // term <= 0 with a term of the form factor * variable + constant bounds the variable.
-void BoundByNumber(const expr::Arena& arena, const Program& p, TermId term, interval::Box& box) {
+struct Bound {
+  size_t variable;
+  bool upper;
+  Rational value;
+};
+std::optional<Bound> BoundOf(const expr::Arena& arena, const Program& p, TermId term) {
   Rational constant(0);
   TermId rest = term;
   if (arena.op(term) == Op::kAdd) {
     const auto args = arena.args(term);
-    if (args.size() != 2) return;
+    if (args.size() != 2) return std::nullopt;
     const size_t number = arena.IsNumber(args[0]) ? 0 : 1;
-    if (!arena.IsNumber(args[number])) return;
+    if (!arena.IsNumber(args[number])) return std::nullopt;
     constant = arena.number(args[number]);
     rest = args[1 - number];
   }
@@ -31,14 +36,22 @@ void BoundByNumber(const expr::Arena& arena, const Program& p, TermId term, inte
     rest = arena.arg(rest, 1);
   }
   const auto it = std::find(p.variables.begin(), p.variables.end(), rest);
-  if (it == p.variables.end()) return;
-  const Interval bound = Enclose((Rational(0) - constant) / factor);
-  Interval& side = box[static_cast<size_t>(it - p.variables.begin())];
-  if (factor > Rational(0)) {
-    side.hi = std::min(side.hi, bound.hi);
-  } else {
-    side.lo = std::max(side.lo, bound.lo);
+  if (it == p.variables.end()) return std::nullopt;
+  return Bound{static_cast<size_t>(it - p.variables.begin()), factor > Rational(0),
+               (Rational(0) - constant) / factor};
+}
+
+// The comparisons that must hold, whatever else does.
+std::vector<TermId> Necessary(const Formula& formula) {
+  std::vector<TermId> result;
+  std::vector<size_t> open{formula.root};
+  while (!open.empty()) {
+    const Formula::Node& node = formula.nodes[open.back()];
+    open.pop_back();
+    if (node.kind == Formula::Kind::kAnd) open.insert(open.end(), node.parts.begin(), node.parts.end());
+    if (node.kind == Formula::Kind::kAtom) result.push_back(formula.terms[node.atom]);
   }
+  return result;
 }
 
 class Shaver {
@@ -50,9 +63,11 @@ class Shaver {
       for (size_t i = 0; i < box_.size(); ++i) {
         if (box_[i].IsPoint()) continue;
         Unbounded(i);
-        for (int part = 0; part < 16 && Cut(i, true); ++part) {
-        }
-        for (int part = 0; part < 16 && Cut(i, false); ++part) {
+        for (const double share : {0.5, 0.125}) {
+          for (const bool upper : {true, false}) {
+            for (int part = 0; part < 60 && Cut(i, upper, share); ++part) {
+            }
+          }
         }
         Fine(i, true);
         Fine(i, false);
@@ -78,13 +93,13 @@ class Shaver {
       if (Fails(i, {box_[i].lo, to})) box_[i].lo = to;
     }
   }
-  // Cuts off an eighth, as long as the formula fails there.
-  bool Cut(size_t i, bool upper) {
+  // Cuts off such a share of the side, if the formula fails there.
+  bool Cut(size_t i, bool upper, double share) {
     Interval& side = box_[i];
     if (!std::isfinite(side.lo) || !std::isfinite(side.hi)) return false;
-    const double w = side.Width() / 8;
+    const double w = side.Width() * share;
     const Interval slab = upper ? Interval{side.hi - w, side.hi} : Interval{side.lo, side.lo + w};
-    if (!Fails(i, slab)) return false;
+    if (!(slab.lo < slab.hi) || !Fails(i, slab)) return false;
     (upper ? side.hi : side.lo) = upper ? slab.lo : slab.hi;
     return true;
   }
@@ -169,14 +184,32 @@ Truth CheckBox(const Program& terms, const Formula& formula, const interval::Box
   return formula.Check([&](size_t atom) { return values[terms.outputs[atom]]; });
 }
 
+std::vector<std::optional<Rational>> Pinned(const expr::Arena& arena, const Program& terms,
+                                            const Formula& formula) {
+  std::vector<std::optional<Rational>> least(terms.variables.size()), most(terms.variables.size());
+  for (const TermId term : Necessary(formula)) {
+    const auto bound = BoundOf(arena, terms, term);
+    if (!bound) continue;
+    auto& slot = (bound->upper ? most : least)[bound->variable];
+    if (!slot || (bound->upper ? bound->value < *slot : *slot < bound->value)) slot = bound->value;
+  }
+  for (size_t i = 0; i < least.size(); ++i) {
+    if (least[i] && (!most[i] || *least[i] != *most[i])) least[i].reset();
+  }
+  return least;
+}
+
 void Contract(const expr::Arena& arena, const Program& terms, const Formula& formula, interval::Box& box) {
-  // Comparisons that must hold, one by one.
-  std::vector<size_t> open{formula.root};
-  while (!open.empty()) {
-    const Formula::Node& node = formula.nodes[open.back()];
-    open.pop_back();
-    if (node.kind == Formula::Kind::kAnd) open.insert(open.end(), node.parts.begin(), node.parts.end());
-    if (node.kind == Formula::Kind::kAtom) BoundByNumber(arena, terms, formula.terms[node.atom], box);
+  for (const TermId term : Necessary(formula)) {
+    const auto bound = BoundOf(arena, terms, term);
+    if (!bound) continue;
+    const Interval value = Enclose(bound->value);
+    Interval& side = box[bound->variable];
+    if (bound->upper) {
+      side.hi = std::min(side.hi, value.hi);
+    } else {
+      side.lo = std::max(side.lo, value.lo);
+    }
   }
   for (const Interval& side : box) {
     if (side.IsEmpty()) return;

@@ -11,6 +11,10 @@ std::vector<Interval> ValuesOn(const Program& program, const interval::Box& box)
 /// What is known of a formula on a box: by interval arithmetic, so kOpen says nothing.
 Truth CheckBox(const Program& terms, const Formula& formula, const interval::Box& box);
 
+/// The variables that the formula makes equal to one number.
+std::vector<std::optional<Rational>> Pinned(const expr::Arena& arena, const Program& terms,
+                                            const Formula& formula);
+
 /// Shrinks the box to an enclosure of the points in it at which the formula holds: exactly where it bounds a
 /// variable by a number, else by cutting off slabs in which it fails. Sides may be unbounded before and
 /// after. The box becomes empty (one side is) if there is no such point. `terms`: the terms of the formula,

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "expr/defined.h"
+
 namespace rondo::reach {
 
 using expr::Elementary;
@@ -37,7 +39,8 @@ class Normaliser {
       case Op::kLe:
       case Op::kLt: {
         const bool strict = (arena_.op(f) == Op::kLt) == positive;
-        return Atom(positive ? arena_.Sub(args[0], args[1]) : arena_.Sub(args[1], args[0]), strict);
+        return Defined(args,
+                       Atom(positive ? arena_.Sub(args[0], args[1]) : arena_.Sub(args[1], args[0]), strict));
       }
       case Op::kEq:
         if (arena_.sort_of(args[0]) == arena_.Bool()) {
@@ -46,8 +49,8 @@ class Normaliser {
           return Junction(false, {both, neither});
         }
         if (arena_.sort_of(args[0]) != arena_.Real()) break;
-        return Junction(positive, {Atom(arena_.Sub(args[0], args[1]), !positive),
-                                   Atom(arena_.Sub(args[1], args[0]), !positive)});
+        return Defined(args, Junction(positive, {Atom(arena_.Sub(args[0], args[1]), !positive),
+                                                 Atom(arena_.Sub(args[1], args[0]), !positive)}));
       default:
         break;
     }
@@ -58,6 +61,13 @@ class Normaliser {
   std::string problem;
 
  private:
+  // An atomic formula, negated or not, holds only where its terms have values
+  // (docs/adr/0005-undefined-terms.md).
+  size_t Defined(const std::vector<TermId>& args, size_t atom) {
+    const TermId undefined = arena_.Or(expr::Undefined(arena_, args[0]), expr::Undefined(arena_, args[1]));
+    if (undefined == arena_.False()) return atom;
+    return Junction(true, {Visit(expr::Complement(arena_, undefined), true), atom});
+  }
   size_t Junction(bool conjunction, std::vector<size_t> parts) {
     if (parts.size() == 1) return parts[0];
     out_.nodes.push_back(

@@ -29,7 +29,8 @@ struct Formula {
   double Miss(const std::function<double(size_t)>& value) const;
 };
 
-/// Negations are pushed inwards; equalities are two comparisons; |a| <= b and the like are taken apart.
+/// Negations are pushed inwards; an atomic formula, negated or not, is false where a term has no value;
+/// equalities are two comparisons; |a| <= b and the like are taken apart.
 ///
 /// @error names what is no comparison of reals.
 base::Result<Formula> Normalise(expr::Arena& arena, TermId formula);

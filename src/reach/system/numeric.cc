@@ -127,18 +127,21 @@ bool Trajectories::Run(const Course& course, double resolution,
     rate(all, derivative);
   };
   const double period = problem_->controller ? problem_->controller->period.ToDouble() : horizon;
+  double suggested = 1e-7 * horizon;
   double t = 0;
-  if (!visit(0, x)) return true;
+  const size_t samples = Samples(*problem_);
+  if (!problem_->controller && !visit(0, x)) return true;
   for (size_t sample = 0; t < horizon; ++sample) {
     set_inputs(t);
-    if (problem_->controller) {
+    if (sample < samples) {
       std::copy(x.begin(), x.end(), all.begin());
       std::vector<double> next(n);
       update(all, next);
       x = next;
       if (!visit(t, x)) return true;
     }
-    const double end = std::min(horizon, period * static_cast<double>(sample + 1));
+    const double end =
+        sample + 1 < samples ? std::min(horizon, period * static_cast<double>(sample + 1)) : horizon;
     while (t < end - 1e-12) {
       double next = std::min(end, t + resolution);
       if (inputs > 0 && !course.inputs.empty())
@@ -147,12 +150,13 @@ bool Trajectories::Run(const Course& course, double resolution,
       auto stepper = odeint::make_controlled(tolerance, tolerance,
                                              odeint::runge_kutta_fehlberg78<std::vector<double>>());
       double at = t;
-      double dt = next - t;
+      double dt = std::min(suggested, next - t);  // too long a step of a stiff system has no end
       int tries = 0;
       while (at < next) {
         dt = std::min(dt, next - at);
         const bool good = stepper.try_step(system, x, at, dt) == odeint::success;
         if (++tries > 2'000'000 || (!good && dt < 1e-16)) return false;
+        if (good) suggested = std::max(dt, 1e-9 * horizon);
         if (next - at < 1e-14) break;
       }
       for (const double v : x) {
@@ -166,7 +170,8 @@ bool Trajectories::Run(const Course& course, double resolution,
   return true;
 }
 
-Violation Trajectories::Worst(const Course& course, double resolution, double margin) {
+Violation Trajectories::Worst(const Course& course, double resolution, double margin, double tolerance,
+                              const base::StopToken& stop) {
   Violation worst;
   worst.miss = -1e300;
   const double slack = 1e-9;
@@ -179,9 +184,9 @@ Violation Trajectories::Worst(const Course& course, double resolution, double ma
           const double miss = Miss(c, x);
           if (miss > worst.miss) worst = {c, t, miss, {x.begin(), x.end()}};
         }
-        return worst.miss <= margin;
+        return worst.miss <= margin && !stop.StopRequested();
       },
-      1e-10);
+      tolerance);
   return worst;
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "base/stop.h"
 #include "reach/system/formula.h"
 #include "reach/system/problem.h"
 
@@ -43,9 +44,9 @@ class Trajectories {
   /// @error if the problem uses what cannot be evaluated.
   static base::Result<Trajectories> Of(const Problem& problem);
 
-  /// Calls `visit` with increasing times, the start, both sides of each sampling instant and the horizon
-  /// included, at most `resolution` seconds apart, until it returns false. False if the state is not finite
-  /// any more.
+  /// Calls `visit` with increasing times, the start (as the controller leaves it), both sides of each later
+  /// sampling instant and the horizon included, at most `resolution` seconds apart, until it returns false.
+  /// False if the state is not finite any more.
   bool Run(const Course& course, double resolution,
            const std::function<bool(double, std::span<const double>)>& visit, double tolerance = 1e-13);
   /// How far claim `c` is from holding in this state.
@@ -55,7 +56,8 @@ class Trajectories {
   size_t claims() const { return claims_.size(); }
   const Problem& problem() const { return *problem_; }
   /// The worst miss over all claims along a course; stops at the first that exceeds `margin`.
-  Violation Worst(const Course& course, double resolution, double margin);
+  Violation Worst(const Course& course, double resolution, double margin, double tolerance,
+                  const base::StopToken& stop);
 
  private:
   struct Compiled {

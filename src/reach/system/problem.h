@@ -8,8 +8,8 @@
 
 namespace rondo::reach {
 
-/// Something that happens at the instants 0, period, 2 period, ...: the states take new values, all at once,
-/// that are computed from the old ones. Between these instants they follow their rates.
+/// Something that happens at the instants 0, period, 2 period, ... before the horizon: the states take new
+/// values, all at once, that are computed from the old ones. Between these instants they follow their rates.
 struct Controller {
   Rational period;
   /// By state; a state without a value keeps its own.
@@ -42,11 +42,21 @@ struct Problem {
   std::vector<Input> inputs;
   std::optional<Controller> controller;
   interval::Box initial;
+  /// By state: its exact value at the start, where there is only one. Empty: none is known.
+  std::vector<std::optional<Rational>> pinned;
   /// By state: the state whose initial value it has, too, if there is one. Empty: none has.
   std::vector<std::optional<size_t>> copy_of;
   TermId assume;
   Rational horizon;
   std::vector<Claim> claims;
 };
+
+/// How often the controller acts before the horizon.
+inline size_t Samples(const Problem& problem) {
+  if (!problem.controller) return 0;
+  const Rational count = problem.horizon / problem.controller->period;
+  const Rational whole = count.Floor();
+  return static_cast<size_t>(whole.ToDouble()) + (whole == count ? 0 : 1);
+}
 
 }  // namespace rondo::reach

@@ -174,7 +174,8 @@ class Compiler {
         const uint32_t b = Number(args[1]);
         if (arena_.elementary_of(t) == Elementary::kMax) return Max(a, b);
         // min(a, b) = -max(-a, -b)
-        const uint32_t max = Max(Linear({{Rational(-1), a}}, Rational(0)), Linear({{Rational(-1), b}}, Rational(0)));
+        const uint32_t max =
+            Max(Linear({{Rational(-1), a}}, Rational(0)), Linear({{Rational(-1), b}}, Rational(0)));
         return Linear({{Rational(-1), max}}, Rational(0));
       }
       case Elementary::kSin:

@@ -255,8 +255,10 @@ void BoxSeries::Gradient(const std::vector<uint32_t>& outputs, const std::vector
         if (c.op == CodeOp::kLinear) {
           for (uint32_t p = c.a; p < c.a + c.b; ++p) uses = uses || below[program_.parts[p].node];
         } else if (c.op != CodeOp::kVariable) {
-          uses = below[c.a] || ((c.op == CodeOp::kProduct || c.op == CodeOp::kAtan2 || c.op == CodeOp::kMax) && below[c.b]) ||
-                 (c.op == CodeOp::kChoose && (below[c.b] || below[c.c]));
+          uses =
+              below[c.a] ||
+              ((c.op == CodeOp::kProduct || c.op == CodeOp::kAtan2 || c.op == CodeOp::kMax) && below[c.b]) ||
+              (c.op == CodeOp::kChoose && (below[c.b] || below[c.c]));
         }
         below[n] = uses;
         if (uses) columns_[n].push_back(static_cast<uint32_t>(variables + s));
@@ -316,7 +318,8 @@ void BoxSeries::Gradient(const std::vector<uint32_t>& outputs, const std::vector
         }
         break;
     }
-    if (!map && (c.op == CodeOp::kAbs || c.op == CodeOp::kMax || c.op == CodeOp::kChoose) && branches[n] == Branch::kEither) {
+    if (!map && (c.op == CodeOp::kAbs || c.op == CodeOp::kMax || c.op == CodeOp::kChoose) &&
+        branches[n] == Branch::kEither) {
       // Held: a source of its own, independent of what it is made of.
       std::fill(row.begin(), row.end(), Interval::Point(0));
       const auto it = std::find(sources.begin(), sources.end(), n);

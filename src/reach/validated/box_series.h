@@ -23,8 +23,8 @@ class BoxSeries {
                bool map = false, uint32_t first = 0, uint32_t end = UINT32_MAX);
   Interval Of(size_t node, size_t order) const { return values_[node * orders_ + order]; }
 
-  /// Order 0 of everything, where nodes without derivative decide for themselves which branch they take, and `held`
-  /// becomes all that the others can be. False as for Compute.
+  /// Order 0 of everything, where nodes without derivative decide for themselves which branch they take, and
+  /// `held` becomes all that the others can be. False as for Compute.
   bool Decide(std::vector<Branch>& branches, std::vector<Interval>& held);
 
   /// Which branches the nodes without derivatives take on all of the box, from order 0.

@@ -61,6 +61,17 @@ bool Flow::Step(double until) {
     h = stepper_.h();
     stepper_.Finish(set_, next_);
     // How the errors of the step compare with what it may add.
+    if (stepper_.HoldsKinks() && h > 1e-4 * horizon_ && h > 4 * options_.least_step) {
+      // What is held for a step costs the square of its length: short steps across kinks.
+      bool rough = false;
+      for (size_t i = 0; i < n; ++i)
+        rough = rough || stepper_.InputError(i) >
+                             0.02 * 0.5 * RangeOf(stepper_.monomials(), set_.Polynomial(i)).Width();
+      if (rough) {
+        h *= 0.5;
+        continue;
+      }
+    }
     double series = 0;
     double degree = 0;
     double linear = 0;

@@ -16,7 +16,7 @@ struct FlowOptions {
   double least_step = 1e-9;
   /// How much one step may add to errors, for its share of the horizon: relative to the set's radius, ...
   double series_tolerance = 1e-5;
-  double degree_tolerance = 0.0015;
+  double degree_tolerance = 0.0012;
   double linear_tolerance = 0.05;
   /// ... or to the state's magnitude, whatever is more.
   double floor = 1e-11;

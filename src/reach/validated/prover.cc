@@ -38,6 +38,7 @@ struct Compiled {
   Program assumed_terms;
   std::vector<double> events;  ///< when claims begin or end, and the horizon
   double horizon = 0, period = 0;
+  size_t samples = 0;  ///< how often the controller acts
 };
 
 base::Result<Compiled> CompileAll(const Problem& problem) {
@@ -86,6 +87,7 @@ base::Result<Compiled> CompileAll(const Problem& problem) {
     if (!map.ok()) return map.error();
     c.updates = std::move(map).value();
     c.period = problem.controller->period.ToDouble();
+    c.samples = Samples(problem);
   }
   auto assumed = Normalise(arena, problem.assume);
   if (!assumed.ok()) return assumed.error();
@@ -162,7 +164,7 @@ class Runner {
     Map observe(c_.observed, c_.dynamics.states, c_.dynamics.inputs, monomials_);
     std::optional<Map> control;
     if (c_.period > 0) control.emplace(c_.updates, c_.dynamics.states, c_.dynamics.inputs, monomials_);
-    attempt_.proved = Instants(flow, observe, 0, true) && Follow(flow, observe, control);
+    attempt_.proved = Follow(flow, observe, control);
     if (!attempt_.proved) ChooseSplit(flow);
     attempt_.leaf.final = flow.Now();
     return std::move(attempt_);
@@ -182,16 +184,17 @@ class Runner {
     size_t event = 0;
     size_t sample = 0;
     while (flow.time() < c_.horizon) {
-      if (control && flow.time() >= c_.period * static_cast<double>(sample)) {
+      if (sample < c_.samples && flow.time() >= c_.period * static_cast<double>(sample)) {
         FlowSet next;
         if (!control->Apply(flow.set())) return Fail(flow, "the controller is not defined on the whole set");
         control->Finish(flow.set(), next, capacity);
         flow.set() = std::move(next);
         ++sample;
       }
+      if (flow.time() == 0 && !Instants(flow, observe, 0, true)) return false;
       while (event < c_.events.size() && c_.events[event] <= flow.time()) ++event;
       double until = event < c_.events.size() ? c_.events[event] : c_.horizon;
-      if (control) until = std::min(until, c_.period * static_cast<double>(sample));
+      if (sample < c_.samples) until = std::min(until, c_.period * static_cast<double>(sample));
       while (flow.time() < until) {
         if (stop_.StopRequested()) return Fail(flow, "stopped");
         if (!flow.Step(until)) return Fail(flow, "the set cannot be followed further");
@@ -355,18 +358,19 @@ class Runner {
 class Search {
  public:
   Search(const Problem& problem, const Compiled& compiled, const ProverOptions& options,
-         Trajectories& trajectories)
+         Trajectories& trajectories, const base::StopToken& stop)
       : problem_(problem),
         compiled_(compiled),
         options_(options),
         trajectories_(trajectories),
+        stop_(stop),
         random_(options.seed) {}
 
   std::optional<Refuted> Try(std::vector<double> start) {
     for (size_t i = 0; i < problem_.copy_of.size(); ++i) {
       if (problem_.copy_of[i]) start[i] = start[*problem_.copy_of[i]];
     }
-    if (trajectories_.MissAssumed(start) > 0) return std::nullopt;
+    if (!MayStart(start)) return std::nullopt;
     Course course;
     course.start = std::move(start);
     const double horizon = compiled_.horizon;
@@ -384,14 +388,67 @@ class Search {
         course.inputs.push_back(std::move(values));
       }
     }
-    Violation worst = trajectories_.Worst(course, horizon / 400, 0);
+    Violation worst = trajectories_.Worst(course, horizon / 400, 0, 1e-10, stop_);
+    if (stop_.StopRequested()) return std::nullopt;
     if (worst.miss <= 0) {
-      if (!closest || worst.miss > closest->miss) closest = worst;
+      if (worst.miss > -1e299 && (!closest || worst.miss > closest->miss)) closest = worst;
       return std::nullopt;
     }
     Refuted refuted{std::move(course), std::move(worst), false};
     refuted.certain = Confirm(refuted);
+    if (!refuted.certain && !Repeats(refuted)) return std::nullopt;
     return refuted;
+  }
+
+  // Is the start one that is assumed? For sure: exactly, or by enclosures.
+  bool MayStart(const std::vector<double>& start) {
+    expr::Arena& arena = *problem_.arena;
+    expr::Substitution values;
+    for (size_t i = 0; i < start.size(); ++i) {
+      const bool pinned = i < problem_.pinned.size() && problem_.pinned[i].has_value();
+      values.emplace(problem_.states[i], arena.Number(arena.Real(), pinned ? *problem_.pinned[i]
+                                                                           : Rational::FromDouble(start[i])));
+    }
+    const TermId exact = expr::Substitute(arena, problem_.assume, values);
+    if (exact == arena.True()) return true;
+    if (exact == arena.False()) return false;
+    return CheckBox(compiled_.assumed_terms, compiled_.assumed, StartBox(start)) == Truth::kTrue;
+  }
+
+  interval::Box StartBox(const std::vector<double>& start) const {
+    interval::Box box;
+    for (size_t i = 0; i < start.size(); ++i) {
+      const bool pinned = i < problem_.pinned.size() && problem_.pinned[i].has_value();
+      box.push_back(pinned ? Enclose(*problem_.pinned[i]) : Interval::Point(start[i]));
+    }
+    return box;
+  }
+
+  // A violation that could not be enclosed counts if it does not depend on how finely it was computed.
+  bool Repeats(const Refuted& refuted) {
+    const double horizon = compiled_.horizon;
+    const Violation fine = trajectories_.Worst(refuted.course, horizon / 20000, 0, 1e-13, stop_);
+    if (stop_.StopRequested() || fine.miss <= 0) return false;
+    // Both stop at the first instant that they look at and see a violation: go on to the same one.
+    double apart = 0;
+    double miss = -1e300;
+    std::vector<double> there;
+    trajectories_.Run(
+        refuted.course, horizon / 400,
+        [&](double t, std::span<const double> x) {
+          if (t < refuted.violation.time - 1e-12) return true;
+          there.assign(x.begin(), x.end());
+          return false;
+        },
+        1e-13);
+    if (there.size() != refuted.violation.state.size()) return false;
+    double size = 1;
+    for (size_t i = 0; i < there.size(); ++i) {
+      apart = std::fmax(apart, std::fabs(there[i] - refuted.violation.state[i]));
+      size = std::fmax(size, std::fabs(there[i]));
+    }
+    miss = trajectories_.Miss(refuted.violation.claim, there);
+    return miss > 1e-7 * size && miss > 100 * apart;
   }
 
   std::optional<Refuted> Run(const base::StopToken& stop) {
@@ -408,13 +465,18 @@ class Search {
           start[i] = box[i].lo;
         } else if (corner) {
           const bool up = free < 16 ? (s >> bit) % 2 == 1 : random_() % 2 == 1;
-          // Just inside: bounds are rounded outwards.
-          const double inset = 1e-9 * box[i].Width();
-          start[i] = up ? box[i].hi - inset : box[i].lo + inset;
+          start[i] = up ? box[i].hi : box[i].lo;
           ++bit;
         } else {
           const double u = static_cast<double>(random_() >> 11) * 0x1p-53;
           start[i] = std::min(box[i].hi, box[i].lo + u * (box[i].hi - box[i].lo));
+        }
+      }
+      // Bounds are rounded outwards: a corner may be just outside.
+      if (corner && !MayStart(start)) {
+        for (size_t i = 0; i < n; ++i) {
+          const double inset = 1e-9 * box[i].Width();
+          start[i] = std::clamp(start[i], box[i].lo + inset, box[i].hi - inset);
         }
       }
       if (auto refuted = Try(std::move(start))) return refuted;
@@ -427,9 +489,7 @@ class Search {
  private:
   // Does the exact solution from this start break the claim at this time? Then the tube of the point says so.
   bool Confirm(const Refuted& refuted) {
-    interval::Box point;
-    for (const double x : refuted.course.start) point.push_back(Interval::Point(x));
-    if (CheckBox(compiled_.assumed_terms, compiled_.assumed, point) != Truth::kTrue) return false;
+    const interval::Box point = StartBox(refuted.course.start);
     Dynamics dynamics = compiled_.dynamics;
     auto monomials = std::make_shared<Monomials>(0);
     FlowOptions options = options_.flow;
@@ -449,8 +509,8 @@ class Search {
     size_t sample = 0;
     while (true) {
       hold(flow.time());
-      if (compiled_.period > 0 && flow.time() >= compiled_.period * static_cast<double>(sample) &&
-          flow.time() < end) {
+      if (sample < compiled_.samples && flow.time() >= compiled_.period * static_cast<double>(sample) &&
+          (flow.time() < end || end == 0)) {
         Map control(compiled_.updates, dynamics.states, dynamics.inputs, monomials);
         FlowSet next;
         if (!control.Apply(flow.set())) return false;
@@ -460,13 +520,13 @@ class Search {
       }
       if (flow.time() >= end) break;
       double until = end;
-      if (compiled_.period > 0) until = std::min(until, compiled_.period * static_cast<double>(sample));
+      if (sample < compiled_.samples) until = std::min(until, compiled_.period * static_cast<double>(sample));
       if (!dynamics.inputs.empty()) {
         const double slot = std::floor(flow.time() / refuted.course.input_period + 1e-9) + 1;
         until = std::min(until, slot * refuted.course.input_period);
       }
       while (flow.time() < until) {
-        if (!flow.Step(until)) return false;
+        if (stop_.StopRequested() || !flow.Step(until)) return false;
       }
     }
     Map observe(compiled_.observed, dynamics.states, dynamics.inputs, monomials);
@@ -480,6 +540,7 @@ class Search {
   const Compiled& compiled_;
   const ProverOptions& options_;
   Trajectories& trajectories_;
+  const base::StopToken& stop_;
   std::mt19937_64 random_;
 };
 
@@ -492,7 +553,7 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
   const Compiled compiled = std::move(made).value();
   auto trajectories = Trajectories::Of(problem);
   if (!trajectories.ok()) return trajectories.error();
-  Search search(problem, compiled, options, const_cast<Trajectories&>(trajectories.value()));
+  Search search(problem, compiled, options, const_cast<Trajectories&>(trajectories.value()), stop);
 
   std::vector<interval::Box> open{problem.initial};
   Proved proved;

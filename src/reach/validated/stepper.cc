@@ -386,7 +386,8 @@ bool Stepper::StaysBelow(size_t observed) {
       up += monomials_->IsEven(m) ? std::fmax(0, value.hi) : Magnitude(value);
     }
   }
-  // Errors: roundings of the sums above, radii, what the series leave out, and how far courses are from nominal ones.
+  // Errors: roundings of the sums above, radii, what the series leave out, and how far courses are from
+  // nominal ones.
   double error = radius + norm * Roundings(static_cast<double>(2 * states_ + 4));
   power = 1;
   for (size_t k = 0; k < order_; ++k) {
@@ -394,7 +395,8 @@ bool Stepper::StaysBelow(size_t observed) {
     power = Above(power * h_);
   }
   // power = h^K: the last order of g, and the rest of both series.
-  error += power * (std::fabs(r) * (Magnitude(models_.Range(node, order_)) + h_ * Magnitude(rest_.Of(node, order_ + 1))));
+  error += power * (std::fabs(r) *
+                    (Magnitude(models_.Range(node, order_)) + h_ * Magnitude(rest_.Of(node, order_ + 1))));
   for (size_t j = 0; j < states_; ++j) {
     if (slope[j] == 0) continue;
     double off = power * Magnitude(rest_.Of(p.outputs[j], order_)) + push_[static_cast<Eigen::Index>(j)];

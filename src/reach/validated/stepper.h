@@ -46,6 +46,9 @@ class Stepper {
   double SeriesError(size_t state) const { return series_error_[state]; }
   double DegreeError(size_t state) const { return degree_error_[state]; }
   double LinearError(size_t state) const { return linear_error_[state]; }
+  /// Is some node without derivative held, and what do inputs and held nodes add to the error of each state?
+  bool HoldsKinks() const { return !sources_.empty(); }
+  double InputError(size_t state) const { return input_error_[state]; }
   /// Encloses the derivative of a state during the step, for nominal inputs.
   Interval Rate(size_t state) const { return rest_.Of(dynamics_.program.outputs[state], 0); }
   /// Encloses output `observed` of the program during [from, to] of the step, loosely (cheap) or by its
@@ -53,8 +56,9 @@ class Stepper {
   Interval Observed(size_t observed, double from, double to, bool tight);
   /// Encloses the derivative of an output during the step, for all inputs.
   Interval ObservedRate(size_t observed);
-  /// Does an output g that is not positive when the step begins stay so? Shown by g' <= r g along every course, for some
-  /// number r: then g(t) <= exp(r t) g(0). Only for outputs that are linear in the states, or fall anyway.
+  /// Does an output g that is not positive when the step begins stay so? Shown by g' <= r g along every
+  /// course, for some number r: then g(t) <= exp(r t) g(0). Only for outputs that are linear in the states,
+  /// or fall anyway.
   bool StaysBelow(size_t observed);
   /// The set at the end of the step.
   void Finish(const FlowSet& set, FlowSet& next);

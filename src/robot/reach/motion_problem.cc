@@ -40,14 +40,21 @@ class Builder {
     p.name = fmt::format("{}: {}", body_.name.text, motion_.text);
     p.arena = &arena_;
     out_.robot_states = body_.states.size();
+    if (!motion_.known_duration) return base::Error{"how long it takes is no constant"};
     rests_ = std::ranges::none_of(motion_.contract.modifies, [](bool m) { return m; });
     p.horizon = motion_.duration.value_or(Rational(1));
     if (!motion_.duration && motion_.control && motion_.control->period) {
       // Whole periods, about a second of them.
       const auto period = Constant(arena_, motion_.control->period);
-      if (period && *period > Rational(0)) p.horizon = *period * ((Rational(1) / *period).Floor() + Rational(1));
+      if (period && *period > Rational(0))
+        p.horizon = *period * ((Rational(1) / *period).Floor() + Rational(1));
     }
     if (!(p.horizon > Rational(0))) return base::Error{"it takes no time at all"};
+    if (!motion_.control && !body_.inputs.empty() && motion_.motion != nullptr) {
+      return base::Error{fmt::format(
+          "no controller sets `{}`: write `control {{ ... }}`, and leave out inputs that are disturbances",
+          body_.inputs[0].name.text)};
+    }
     if (auto wrong = States(); !wrong.empty()) return base::Error{wrong};
     if (auto wrong = Inputs(); !wrong.empty()) return base::Error{wrong};
     if (auto wrong = Start(); !wrong.empty()) return base::Error{wrong};
@@ -62,6 +69,13 @@ class Builder {
   bool Sampled(TermId input) const {
     if (!motion_.control || !motion_.control->period) return false;
     return std::ranges::any_of(motion_.control->laws, [&](const auto& law) { return law.first == input; });
+  }
+
+  // What an input was before the controller acts first: does anything depend on it?
+  bool ReadBeforeSet(TermId input) const {
+    std::vector<TermId> terms{motion_.contract.pre};
+    for (const auto& [variable, value] : motion_.control->laws) terms.push_back(value);
+    return VariablesOf(arena_, terms).contains(input);
   }
 
   void Add(const std::string& name, TermId term, TermId rate, const Variable* variable) {
@@ -117,7 +131,7 @@ class Builder {
       Add(v.name.text, v.term, Zero(), &v);
     }
     for (const Variable& v : body_.inputs) {
-      if (Sampled(v.term)) Add(v.name.text, v.term, Zero(), nullptr);
+      if (Sampled(v.term)) Add(v.name.text, v.term, Zero(), ReadBeforeSet(v.term) ? &v : nullptr);
     }
     if (UsesClock()) Add("clock", world_.clock, arena_.Number(arena_.Real(), Rational(1)), nullptr);
     for (const MotionInstance::Unknown& u : motion_.unknowns) Add(u.name, u.term, Zero(), nullptr);
@@ -229,6 +243,8 @@ class Builder {
     if (!formula.ok()) return fmt::format("in `pre`: {}", formula.error().message);
     auto terms = reach::Compile(arena_, variables, formula.value().terms);
     if (!terms.ok()) return fmt::format("in `pre`: {}", terms.error().message);
+    p.pinned = reach::Pinned(arena_, terms.value(), formula.value());
+    p.pinned.resize(p.states.size());
     reach::Contract(arena_, terms.value(), formula.value(), box);
     for (size_t i = 0; i < p.states.size(); ++i) {
       if (i < p.copy_of.size() && p.copy_of[i]) continue;
@@ -257,8 +273,8 @@ class Builder {
     return "";
   }
 
-  // A motion without an end. What does not move keeps its promises as long as it likes: the start says everything. Else
-  // it must be back where it may begin after a while: then it can go on in the same way.
+  // A motion without an end. What does not move keeps its promises as long as it likes: the start says
+  // everything. Else it must be back where it may begin after a while: then it can go on in the same way.
   std::string ForEver() {
     if (motion_.duration) return "";
     reach::Problem& p = out_.problem;
@@ -280,6 +296,9 @@ class Builder {
     std::vector<TermId> again{motion_.contract.pre};
     for (const auto* list : {&body_.states, &body_.memory}) {
       for (const Variable& v : *list) {
+        // What nobody sets is as it was.
+        const auto at = static_cast<size_t>(std::ranges::find(p.states, v.term) - p.states.begin());
+        if (p.rates[at] == Zero() && !(p.controller && p.controller->updates[at])) continue;
         if (v.least) again.push_back(arena_.Le(*v.least, v.term));
         if (v.most) again.push_back(arena_.Le(v.term, *v.most));
       }
@@ -288,13 +307,36 @@ class Builder {
     return "";
   }
 
+  // Is a term at most (at least) this, as one can see: numbers, clamps, choices?
+  bool Bounded(TermId term, TermId limit, bool upper) {
+    if (term == limit) return true;
+    const TermId holds = upper ? arena_.Le(term, limit) : arena_.Le(limit, term);
+    if (holds == arena_.True()) return true;
+    const auto part = [&](size_t i) { return Bounded(arena_.arg(term, i), limit, upper); };
+    if (arena_.op(term) == expr::Op::kIte) return part(1) && part(2);
+    if (arena_.op(term) != expr::Op::kElementary) return false;
+    const expr::Elementary e = arena_.elementary_of(term);
+    if (e != expr::Elementary::kMin && e != expr::Elementary::kMax) return false;
+    const bool one = (e == expr::Elementary::kMin) == upper;
+    return one ? part(0) || part(1) : part(0) && part(1);
+  }
+
   void Claims() {
     reach::Problem& p = out_.problem;
     const Rational start(0);
     if (motion_.contract.during != arena_.True())
       p.claims.push_back({"during", motion_.contract.during, start, p.horizon});
-    if (motion_.contract.post != arena_.True())
-      p.claims.push_back({"post", motion_.contract.post, p.horizon, p.horizon});
+    if (motion_.contract.post != arena_.True()) {
+      // A motion that may be interrupted ends at any time that its duration allows; without an end it comes
+      // back to where it began, so from the beginning. Any other ends when its controller says so: at the
+      // latest time here.
+      Rational from = p.horizon;
+      if (motion_.interruptible) from = motion_.duration ? motion_.least : start;
+      if (!motion_.interruptible && motion_.least < p.horizon)
+        out_.assumed.push_back(fmt::format("`{}` ends after {} s, the longest that it may take", motion_.text,
+                                           p.horizon.ToString()));
+      p.claims.push_back({"post", motion_.contract.post, from, p.horizon});
+    }
     for (size_t i = 0; i < body_.states.size(); ++i) {
       const Variable& v = body_.states[i];
       if (!motion_.contract.modifies[i] ||
@@ -306,6 +348,20 @@ class Builder {
       if (!range.empty())
         p.claims.push_back(
             {fmt::format("{} in its range", v.name.text), arena_.And(range), start, p.horizon});
+    }
+    // What a controller sets stays in its range, too.
+    for (const Variable& v : body_.inputs) {
+      if (!motion_.control || (!v.least && !v.most)) continue;
+      for (const auto& [variable, value] : motion_.control->laws) {
+        if (variable != v.term) continue;
+        const TermId set = motion_.control->period ? v.term : value;
+        std::vector<TermId> range;
+        if (v.least && !Bounded(value, *v.least, false)) range.push_back(arena_.Le(*v.least, set));
+        if (v.most && !Bounded(value, *v.most, true)) range.push_back(arena_.Le(set, *v.most));
+        if (range.empty()) continue;
+        p.claims.push_back(
+            {fmt::format("{} in its range", v.name.text), arena_.And(range), start, p.horizon});
+      }
     }
   }
 
@@ -381,11 +437,16 @@ std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World&
     instance.text += fmt::format("({})", list);
     instance.contract = ContractOf(body, *motion, scope, e);
     instance.control = ControlOf(body, *motion, scope, e);
+    instance.interruptible = motion->interruptible;
+    const Value least = e.Evaluate(motion->least, scope);
+    instance.known_duration = least.kind == ValueKind::kQuantity && arena.IsNumber(least.terms[0]);
+    if (instance.known_duration) instance.least = arena.number(least.terms[0]);
     const lang::Expr& end = e.pool()[motion->most];
     if (end.kind != lang::ExprKind::kName || end.text != "inf") {
       const Value most = e.Evaluate(motion->most, scope);
       if (most.kind == ValueKind::kQuantity && arena.IsNumber(most.terms[0]))
         instance.duration = arena.number(most.terms[0]);
+      instance.known_duration = instance.known_duration && instance.duration.has_value();
     }
     all.push_back(std::move(instance));
   }

@@ -18,6 +18,9 @@ struct MotionInstance {
   Contract contract;
   std::optional<Control> control;
   std::optional<expr::Rational> duration;  ///< the longest it may take, seconds; nothing: for ever
+  expr::Rational least;                    ///< the shortest
+  bool interruptible = false;
+  bool known_duration = true;  ///< are these constants?
   /// Parameters that may have any value between two bounds, the same one all the time.
   struct Unknown {
     std::string name;
@@ -34,7 +37,7 @@ struct MotionInstance {
 /// A problem, and what its states are called by people.
 struct MotionProblem {
   reach::Problem problem;
-  size_t robot_states = 0;              ///< the first ones: the robot's own, without memory, clock and the like
+  size_t robot_states = 0;           ///< the first ones: the robot's own, without memory, clock and the like
   std::vector<std::string> names;    ///< by state
   std::vector<std::string> assumed;  ///< what a proof of it rests on, for people
 };
@@ -43,6 +46,8 @@ struct MotionProblem {
 /// `post` at the end, states in their ranges, and states that it does not modify as they were. Inputs that no
 /// controller sets, and everything of other robots and the environment, may change at any time within their
 /// ranges and within what the contract assumes.
+///
+/// A robot with inputs needs a controller, and be it an empty one: else nothing is known of them.
 ///
 /// @error says why there is no such problem: no dynamics, no bounds for the start, a motion that modifies
 /// nothing but whose robot moves anyway.
