@@ -140,7 +140,7 @@ std::vector<std::string> Files() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, Audit, testing::ValuesIn(Files()),
-                         [](const auto& info) { return std::filesystem::path(info.param).stem().string(); });
+                         [](const auto& file) { return std::filesystem::path(file.param).stem().string(); });
 
 // Much sharper than boxes: at each step the polynomials say where the trajectory with these symbols is, up to
 // an error.

@@ -10,10 +10,14 @@ namespace {
 
 typedef double Lanes __attribute__((vector_size(kWidth * sizeof(double))));
 
-inline Lanes Load(const double* from) {
-  Lanes v;
-  std::memcpy(&v, from, sizeof v);
-  return v;
+// sum += the products of eight doubles each. Vectors are not passed by value: how depends on the instruction
+// set.
+inline void AddProducts(const double* a, const double* b, Lanes& sum) {
+  Lanes x;
+  Lanes y;
+  std::memcpy(&x, a, sizeof x);
+  std::memcpy(&y, b, sizeof y);
+  sum += x * y;
 }
 
 inline double Sum(const Lanes& v) {
@@ -26,7 +30,7 @@ void ConvolveHere(const Pairs& pairs, size_t count, const double* left, size_t l
     for (size_t o = 0; o < count; ++o) {
       Lanes sum{};
       for (uint32_t p = pairs.begin[o]; p < pairs.begin[o + 1]; ++p)
-        sum += Load(left + pairs.left[p] * left_stride) * Load(right + pairs.right[p] * right_stride);
+        AddProducts(left + pairs.left[p] * left_stride, right + pairs.right[p] * right_stride, sum);
       out[o] = Sum(sum);
     }
     return;
@@ -37,7 +41,7 @@ void ConvolveHere(const Pairs& pairs, size_t count, const double* left, size_t l
       const double* a = left + pairs.left[p] * left_stride;
       const double* b = right + pairs.right[p] * right_stride;
       for (size_t block = 0; block < blocks; ++block)
-        sum += Load(a + block * kWidth) * Load(b + block * kWidth);
+        AddProducts(a + block * kWidth, b + block * kWidth, sum);
     }
     out[o] = Sum(sum);
   }
