@@ -22,7 +22,7 @@ def main():
         liar.chmod(0o755)
         for kind in listed:
             info = json.loads(subprocess.run([rondo, "explain", "--json", kind["kind"]], capture_output=True, check=True).stdout)
-            motion = kind["kind"].startswith(("robot-", "choreo-", "process-"))
+            motion = kind["kind"].startswith(("robot-", "choreo-", "process-", "reach-"))
             suffix = ".smt2" if info["verb"] in ("solve", "certify") else ".rondo" if motion else ".koord"
             args = [rondo, *info["verb"].split(), "--json"]
             # An example of several files: each begins with a line `== NAME`.

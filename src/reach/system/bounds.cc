@@ -6,10 +6,6 @@
 namespace rondo::reach {
 
 using expr::Op;
-using interval::operator+;
-using interval::operator-;
-using interval::operator*;
-using interval::operator/;
 
 namespace {
 

@@ -5,11 +5,6 @@
 
 namespace rondo::reach {
 
-using interval::operator+;
-using interval::operator-;
-using interval::operator*;
-using interval::operator/;
-
 namespace {
 
 Interval Enclosed(const LinearPart& part) {

@@ -24,8 +24,8 @@ inline double Sum(const Lanes& v) {
   return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
 }
 
-void ConvolveHere(const Pairs& pairs, size_t count, const double* left, size_t left_stride,
-                  const double* right, size_t right_stride, size_t blocks, double* out) {
+[[maybe_unused]] void ConvolveHere(const Pairs& pairs, size_t count, const double* left, size_t left_stride,
+                                   const double* right, size_t right_stride, size_t blocks, double* out) {
   if (blocks == 1) {
     for (size_t o = 0; o < count; ++o) {
       Lanes sum{};

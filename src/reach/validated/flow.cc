@@ -7,8 +7,6 @@
 
 namespace rondo::reach {
 
-using interval::operator+;
-
 namespace {
 
 FlowOptions Chosen(FlowOptions options, size_t symbols) {

@@ -9,8 +9,6 @@
 
 namespace rondo::reach {
 
-using interval::operator+;
-
 double FlowSet::Error(size_t i) const {
   const auto row = static_cast<Eigen::Index>(i);
   return Above(generators.row(row).head(used).cwiseAbs().sum() + slack[i]);

@@ -6,11 +6,6 @@
 
 namespace rondo::reach {
 
-using interval::operator+;
-using interval::operator-;
-using interval::operator*;
-using interval::operator/;
-
 namespace {
 
 Interval Exactly(double x) { return Interval::Point(x); }

@@ -9,10 +9,6 @@
 
 namespace rondo::reach {
 
-using interval::operator+;
-using interval::operator-;
-using interval::operator*;
-
 namespace {
 
 double Magnitude(Interval i) { return std::fmax(std::fabs(i.lo), std::fabs(i.hi)); }

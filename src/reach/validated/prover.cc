@@ -15,8 +15,6 @@
 
 namespace rondo::reach {
 
-using interval::operator+;
-
 namespace {
 
 struct CompiledClaim {
