@@ -18,8 +18,7 @@ FlowOptions Chosen(FlowOptions options, size_t symbols) {
 
 Flow::Flow(const Dynamics& dynamics, std::shared_ptr<Monomials> monomials, FlowOptions options,
            double horizon)
-    : dynamics_(dynamics),
-      options_(Chosen(options, monomials->symbols())),
+    : options_(Chosen(options, monomials->symbols())),
       horizon_(horizon),
       stepper_(dynamics, std::move(monomials), options_.order,
                options.generators_per_state * static_cast<Eigen::Index>(dynamics.states)),

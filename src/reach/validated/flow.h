@@ -47,7 +47,6 @@ class Flow {
   size_t MostDegree() const;
   void AdaptDegree();
 
-  const Dynamics& dynamics_;
   FlowOptions options_;
   double horizon_;
   Stepper stepper_;

@@ -183,10 +183,11 @@ double ModelSeries::Convolution(const Sum& sum, size_t order, double* out) {
   const Operand& left = operands_[sum.left];
   const Operand& right = operands_[sum.right];
   const Pairs pairs{monomials_->pair_begin().data(), monomials_->left().data(), monomials_->right().data()};
+  const size_t blocks = order / kWidth + 1;
   convolve_(pairs, count_, left.packed.data(), stride_, right.packed.data() + (stride_ - 1 - order), stride_,
-            order / kWidth + 1, out);
-  const double roundings =
-      Roundings(static_cast<double>(monomials_->longest() * (order / kWidth + 1) * kWidth + 8));
+            blocks, out);
+  const size_t summands = monomials_->longest() * blocks * kWidth;
+  const double roundings = Roundings(static_cast<double>(summands + 8));
   double error = 0;
   for (size_t a = 0; a <= order; ++a) {
     double weight = 1;

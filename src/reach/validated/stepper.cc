@@ -81,7 +81,7 @@ bool Stepper::Advance(const FlowSet& set, double h, double least, size_t order) 
     Decide(during_);
   }
   if (!Series(set, order)) return false;
-  for (int attempt = 0; h >= least; ++attempt) {
+  while (h >= least) {
     if (Try(set, h)) {
       h_ = h;
       return true;
