@@ -11,7 +11,7 @@ namespace rondo::driver {
 namespace {
 
 // The version changes with what a proof means.
-std::string Question(const ContractResult& r) { return "rondo reach 1\n" + reach::ToText(r.made.problem); }
+std::string Question(const ContractResult& r) { return "rondo reach 2\n" + reach::ToText(r.made.problem); }
 
 }  // namespace
 

@@ -37,19 +37,6 @@ std::optional<Bound> BoundOf(const expr::Arena& arena, const Program& p, TermId 
                (Rational(0) - constant) / factor};
 }
 
-// The comparisons that must hold, whatever else does.
-std::vector<TermId> Necessary(const Formula& formula) {
-  std::vector<TermId> result;
-  std::vector<size_t> open{formula.root};
-  while (!open.empty()) {
-    const Formula::Node& node = formula.nodes[open.back()];
-    open.pop_back();
-    if (node.kind == Formula::Kind::kAnd) open.insert(open.end(), node.parts.begin(), node.parts.end());
-    if (node.kind == Formula::Kind::kAtom) result.push_back(formula.terms[node.atom]);
-  }
-  return result;
-}
-
 class Shaver {
  public:
   Shaver(const Program& p, const Formula& f, interval::Box& box) : p_(p), f_(f), box_(box) {}
@@ -117,6 +104,18 @@ class Shaver {
 };
 
 }  // namespace
+
+std::vector<TermId> Necessary(const Formula& formula) {
+  std::vector<TermId> result;
+  std::vector<size_t> open{formula.root};
+  while (!open.empty()) {
+    const Formula::Node& node = formula.nodes[open.back()];
+    open.pop_back();
+    if (node.kind == Formula::Kind::kAnd) open.insert(open.end(), node.parts.begin(), node.parts.end());
+    if (node.kind == Formula::Kind::kAtom) result.push_back(formula.terms[node.atom]);
+  }
+  return result;
+}
 
 std::vector<Interval> ValuesOn(const Program& p, const interval::Box& box) {
   std::vector<Interval> v(p.code.size());

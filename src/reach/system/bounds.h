@@ -11,6 +11,9 @@ std::vector<Interval> ValuesOn(const Program& program, const interval::Box& box)
 /// What is known of a formula on a box: by interval arithmetic, so kOpen says nothing.
 Truth CheckBox(const Program& terms, const Formula& formula, const interval::Box& box);
 
+/// The terms of the comparisons (term <= 0 or term < 0) that must hold, whatever else does.
+std::vector<TermId> Necessary(const Formula& formula);
+
 /// The variables that the formula makes equal to one number.
 std::vector<std::optional<Rational>> Pinned(const expr::Arena& arena, const Program& terms,
                                             const Formula& formula);

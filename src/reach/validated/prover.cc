@@ -22,7 +22,7 @@ struct CompiledClaim {
   size_t first = 0;  ///< its terms among the observed outputs
   double from = 0, to = 0;
   bool instant = false;
-  std::vector<bool> starts_below;  ///< by term: is it at most zero at the start, exactly?
+  std::vector<bool> starts_below;  ///< by term: at most zero at the start, exactly, and does it never jump?
 };
 
 // Everything about a problem that all parts of the initial set share.
@@ -94,14 +94,8 @@ base::Result<Compiled> CompileAll(const Problem& problem) {
   if (!assumed_terms.ok()) return assumed_terms.error();
   c.assumed_terms = std::move(assumed_terms).value();
   // Terms that are at most zero at the start, whatever rounding says.
-  std::set<TermId> known;
-  std::vector<size_t> nodes{c.assumed.root};
-  while (!nodes.empty()) {
-    const Formula::Node node = c.assumed.nodes[nodes.back()];
-    nodes.pop_back();
-    if (node.kind == Formula::Kind::kAnd) nodes.insert(nodes.end(), node.parts.begin(), node.parts.end());
-    if (node.kind == Formula::Kind::kAtom) known.insert(c.assumed.terms[node.atom]);
-  }
+  const std::vector<TermId> necessary = Necessary(c.assumed);
+  const std::set<TermId> known(necessary.begin(), necessary.end());
   expr::Substitution originals;
   for (size_t i = 0; i < problem.copy_of.size(); ++i) {
     if (problem.copy_of[i]) originals.emplace(problem.states[i], problem.states[*problem.copy_of[i]]);
@@ -110,7 +104,14 @@ base::Result<Compiled> CompileAll(const Problem& problem) {
     for (const TermId term : claim.formula.terms) {
       const TermId start = expr::Substitute(arena, term, originals);
       const bool number = arena.IsNumber(start) && !(arena.number(start) > Rational(0));
-      claim.starts_below.push_back(claim.from == 0 && (number || known.contains(start)));
+      // What a controller sets has another value as soon as it begins, and inputs at any time.
+      const size_t at = claim.first + claim.starts_below.size();
+      const bool continuous =
+          std::ranges::none_of(c.observed.depends[c.observed.outputs[at]], [&](uint32_t v) {
+            return v >= problem.states.size() ||
+                   (problem.controller && problem.controller->updates[v].has_value());
+          });
+      claim.starts_below.push_back(claim.from == 0 && continuous && (number || known.contains(start)));
     }
   }
   c.events.assign(events.begin(), events.end());
