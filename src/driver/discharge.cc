@@ -23,10 +23,10 @@ bool IsProved(const ContractResult& r, const solve::cache::ProofCache& cache) {
   return r.impossible.empty() && cache.Find(Question(r)).has_value();
 }
 
-std::map<const choreo::Graph*, std::set<std::string>> ProvedMotions(Motion& motion, Session& session,
+std::map<const choreo::Graph*, std::set<std::string>> ProvedMotions(Motion& motion,
                                                                     const solve::cache::ProofCache& cache) {
   std::map<std::pair<const choreo::Graph*, std::string>, bool> all;
-  for (const ContractResult& r : ContractsOf(motion, session)) {
+  for (const ContractResult& r : ContractsOf(motion)) {
     const auto [it, fresh] = all.emplace(std::pair(r.graph, r.motion), true);
     it->second = it->second && IsProved(r, cache);
   }

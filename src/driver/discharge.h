@@ -16,7 +16,7 @@ void StoreProved(const ContractResult& result, const solve::cache::ProofCache& c
 bool IsProved(const ContractResult& result, const solve::cache::ProofCache& cache);
 
 /// For each choreography the motions (`Type.Motion`) all of whose contracts are proved.
-std::map<const choreo::Graph*, std::set<std::string>> ProvedMotions(Motion& motion, Session& session,
+std::map<const choreo::Graph*, std::set<std::string>> ProvedMotions(Motion& motion,
                                                                     const solve::cache::ProofCache& cache);
 
 /// Takes the assumptions about ports that are proved off `assumed`; lines that say of which robot, and for

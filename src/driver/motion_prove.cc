@@ -35,7 +35,7 @@ class Run {
     // First of all, as `rondo reach` does: sums are written in the order in which their terms are made.
     if (motion->declarations != nullptr && !session_.diagnostics.has_errors() && options_.cache) {
       const solve::cache::ProofCache cache(solve::cache::ProofCache::DefaultFolder());
-      discharged_ = ProvedMotions(*motion, session_, cache);
+      discharged_ = ProvedMotions(*motion, cache);
     }
     const auto conditions = CheckStructure(*motion, session_);
     if (!conditions || session_.diagnostics.has_errors()) return Finish(kRejected);

@@ -75,7 +75,7 @@ class Run {
       motion_ = LoadMotion(options_.files, {}, session_);
       if (motion_ == nullptr || motion_->declarations == nullptr || session_.diagnostics.has_errors())
         return false;
-      results_ = ContractsOf(*motion_, session_);
+      results_ = ContractsOf(*motion_);
     }
     return !session_.diagnostics.has_errors();
   }

@@ -30,7 +30,7 @@ const reach::Problem& ProblemOf(const ContractResult& r) { return r.made.problem
 
 }  // namespace
 
-std::vector<ContractResult> ContractsOf(Motion& motion, Session& session) {
+std::vector<ContractResult> ContractsOf(Motion& motion) {
   std::vector<ContractResult> all;
   const choreo::Graph* of = nullptr;
   const auto add = [&](const robot::World& world, const robot::Body& body,
@@ -70,7 +70,6 @@ std::vector<ContractResult> ContractsOf(Motion& motion, Session& session) {
     for (const robot::MotionInstance& i : robot::MotionsOf(*type, motion.declarations->evaluator(), *world))
       add(*world, world->bodies[0], i);
   }
-  (void)session;
   return all;
 }
 

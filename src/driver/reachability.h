@@ -27,7 +27,7 @@ struct ContractResult {
 
 /// The contracts of the motions that choreographies use; without any, of all robot types, as far as they have
 /// controllers or dynamics and their parameters have values or ranges.
-std::vector<ContractResult> ContractsOf(Motion& motion, Session& session);
+std::vector<ContractResult> ContractsOf(Motion& motion);
 
 /// The models that the platforms of a Koord program name, read from their files.
 struct Platforms {

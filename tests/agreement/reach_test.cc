@@ -29,7 +29,7 @@ std::unique_ptr<Loaded> Load(const std::string& file) {
   auto loaded = std::make_unique<Loaded>();
   loaded->motion = driver::LoadMotion({file}, {}, loaded->session);
   if (loaded->motion && loaded->motion->declarations)
-    loaded->contracts = driver::ContractsOf(*loaded->motion, loaded->session);
+    loaded->contracts = driver::ContractsOf(*loaded->motion);
   return loaded;
 }
 

@@ -23,11 +23,7 @@ base::Result<BatchJudge> BatchJudge::Of(const Problem& problem) {
     code.values.resize(code.program.code.size());
   };
   compile(problem.rates, judge.rates_);
-  std::vector<TermId> updates = problem.states;
-  for (size_t i = 0; problem.controller && i < updates.size(); ++i) {
-    if (problem.controller->updates[i]) updates[i] = *problem.controller->updates[i];
-  }
-  compile(updates, judge.updates_);
+  compile(Updated(problem), judge.updates_);
   std::vector<TermId> terms;
   for (const Claim& c : problem.claims) {
     auto formula = Normalise(*problem.arena, c.formula);

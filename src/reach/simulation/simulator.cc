@@ -73,11 +73,7 @@ base::Result<std::unique_ptr<Simulator>> SimulatorOf(const Problem& problem, siz
   for (const Input& i : problem.inputs) variables.push_back(i.term);
   auto rates = Compile(*problem.arena, variables, problem.rates);
   if (!rates.ok()) return rates.error();
-  std::vector<TermId> updates = problem.states;
-  for (size_t i = 0; problem.controller && i < updates.size(); ++i) {
-    if (problem.controller->updates[i]) updates[i] = *problem.controller->updates[i];
-  }
-  auto map = Compile(*problem.arena, variables, updates);
+  auto map = Compile(*problem.arena, variables, Updated(problem));
   if (!map.ok()) return map.error();
   return std::unique_ptr<Simulator>(
       std::make_unique<ModelSimulator>(problem, std::move(rates).value(), std::move(map).value(), substeps));

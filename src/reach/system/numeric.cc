@@ -71,11 +71,7 @@ base::Result<Trajectories> Trajectories::Of(const Problem& problem) {
   if (!rates.ok()) return rates.error();
   t.rates_ = std::move(rates).value();
   if (problem.controller) {
-    std::vector<TermId> updates = problem.states;
-    for (size_t i = 0; i < updates.size(); ++i) {
-      if (problem.controller->updates[i]) updates[i] = *problem.controller->updates[i];
-    }
-    auto program = Compile(*problem.arena, variables, updates);
+    auto program = Compile(*problem.arena, variables, Updated(problem));
     if (!program.ok()) return program.error();
     t.updates_ = std::move(program).value();
   }

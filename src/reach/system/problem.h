@@ -51,6 +51,14 @@ struct Problem {
   std::vector<Claim> claims;
 };
 
+/// What each state is after the controller has acted.
+inline std::vector<TermId> Updated(const Problem& problem) {
+  std::vector<TermId> values = problem.states;
+  for (size_t i = 0; problem.controller && i < values.size(); ++i)
+    values[i] = problem.controller->updates[i].value_or(values[i]);
+  return values;
+}
+
 /// How often the controller acts before the horizon.
 inline size_t Samples(const Problem& problem) {
   if (!problem.controller) return 0;

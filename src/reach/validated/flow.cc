@@ -29,7 +29,7 @@ void Flow::Start(FlowSet set, double time) {
   time_ = begin_ = time;
   const size_t least = stepper_.monomials().symbols() == 0 ? 0 : options_.least_degree;
   if (set_.degree < least) {
-    const_cast<Monomials&>(stepper_.monomials()).Extend(least);
+    stepper_.monomials().Extend(least);
     set_.Raise(stepper_.monomials(), least);
   }
 }
@@ -73,13 +73,11 @@ bool Flow::Step(double until) {
     double degree = 0;
     double linear = 0;
     largest_ = 0;
-    for (size_t i = 0; i < n; ++i)
-      largest_ = std::fmax(largest_,
-                           std::fmax(std::fabs(stepper_.during()[i].lo), std::fabs(stepper_.during()[i].hi)));
+    for (size_t i = 0; i < n; ++i) largest_ = std::fmax(largest_, Magnitude(stepper_.during()[i]));
     for (size_t i = 0; i < n; ++i) {
       const Interval start = RangeOf(stepper_.monomials(), set_.Polynomial(i));
       const double radius = start.Width() * 0.5;
-      const double magnitude = std::fmax(std::fabs(start.lo), std::fabs(start.hi)) + 1e-6 * largest_;
+      const double magnitude = Magnitude(start) + 1e-6 * largest_;
       const double share = h / horizon_;
       const double least = std::fmax(share * options_.floor, 4e-16) * magnitude + 0x1p-900;
       series =
@@ -101,7 +99,7 @@ bool Flow::Step(double until) {
       continue;
     }
     if (degree > 1 && set_.degree < MostDegree()) {
-      const_cast<Monomials&>(stepper_.monomials()).Extend(set_.degree + 1);
+      stepper_.monomials().Extend(set_.degree + 1);
       set_.Raise(stepper_.monomials(), set_.degree + 1);
       calm_ = 0;
       continue;
@@ -119,8 +117,7 @@ bool Flow::Step(double until) {
       // meanwhile.
       const double late = static_cast<double>(since_event_ + 4) * 0x1p-50 * std::fabs(until);
       for (size_t i = 0; i < n; ++i) {
-        const Interval rate = stepper_.Rate(i);
-        set_.slack[i] = Above(set_.slack[i] + late * std::fmax(std::fabs(rate.lo), std::fabs(rate.hi)));
+        set_.slack[i] = Above(set_.slack[i] + late * Magnitude(stepper_.Rate(i)));
       }
       since_event_ = 0;
     }

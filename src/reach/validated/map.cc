@@ -6,12 +6,6 @@
 
 namespace rondo::reach {
 
-namespace {
-
-double Magnitude(Interval i) { return std::fmax(std::fabs(i.lo), std::fabs(i.hi)); }
-
-}  // namespace
-
 Map::Map(const Program& program, size_t states, std::vector<Interval> inputs,
          std::shared_ptr<Monomials> monomials)
     : program_(program),
@@ -80,8 +74,6 @@ Interval Map::Range(size_t output) const {
   return interval::Meet(RangeOf(*monomials_, model.polynomial) + Interval{-error, error},
                         box_.Of(program_.outputs[output], 0));
 }
-
-double Map::Error(size_t output) const { return more_[output]; }
 
 void Map::Finish(const FlowSet& set, FlowSet& next, Eigen::Index capacity) const {
   next.dimension = set.dimension;

@@ -22,8 +22,6 @@ class Map {
   Interval Range(size_t output) const;
   /// The set of outputs, which must be as many as the states.
   void Finish(const FlowSet& set, FlowSet& next, Eigen::Index capacity) const;
-  /// How far the set of outputs is from being known, because of kinks and truncation.
-  double Error(size_t output) const;
 
  private:
   const Program& program_;

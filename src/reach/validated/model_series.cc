@@ -11,7 +11,6 @@ namespace rondo::reach {
 
 namespace {
 
-double Magnitude(Interval i) { return std::fmax(std::fabs(i.lo), std::fabs(i.hi)); }
 /// Of an interval, a double in it and how far its members are from that.
 std::pair<double, double> Centred(Interval i) {
   const double middle = i.Middle();
@@ -260,25 +259,24 @@ void ModelSeries::MultiplyInto(const double* a, double a_radius, const Model& b,
                  static_cast<double>(count_ * monomials_->longest()) * 0x1p-1070);
 }
 
+bool ModelSeries::Function(CodeOp function, size_t argument, Model& out) const {
+  const ModelView a = At(argument, 0);
+  return Compose(function, {{a.polynomial.begin(), a.polynomial.end()}, a.radius}, out);
+}
+
 // g(c + d) = sum of g_k d^k, where c is the model's constant term, and the rest of the series by its
 // enclosure.
-bool ModelSeries::Function(CodeOp function, size_t argument, Model& out) {
-  const ModelView a = At(argument, 0);
-  const Interval range = RangeOf(a);
-  const double c = a.polynomial[0];
+bool ModelSeries::Compose(CodeOp function, Model d, Model& out) const {
+  const Interval range = RangeOfParts(d.polynomial, d.radius);
+  const double c = d.polynomial[0];
+  d.polynomial[0] = 0;
   const Interval beyond = range - Interval::Point(c);
   std::vector<Interval> at_centre(degree_ + 2), at_range(degree_ + 2);
-  const size_t last =
-      std::max<size_t>(degree_, 1);  // the degree of the series' last term, which is an enclosure
-  const size_t terms = degree_ == 0 || count_ == 1 ? 0 : last;
+  const size_t terms = count_ == 1 ? 0 : degree_;  // the degree of the last term that is no enclosure
   if (!Jet(function, range, at_range) || !Jet(function, Interval::Point(c), at_centre)) return false;
   double reach = 1;
   for (size_t k = 0; k <= terms; ++k) reach = Above(reach * Magnitude(beyond));
   const double rest = Above(Magnitude(at_range[terms + 1]) * reach);
-  Model d;
-  d.polynomial.assign(a.polynomial.begin(), a.polynomial.end());
-  d.polynomial[0] = 0;
-  d.radius = a.radius;
   const auto [top, top_error] = Centred(at_centre[terms]);
   out.polynomial.assign(count_, 0.0);
   out.polynomial[0] = top;
@@ -314,31 +312,9 @@ bool ModelSeries::Arctangent2(size_t y, size_t x, double* out, double& radius) {
   quotient.polynomial.resize(count_);
   MultiplyInto(Values(dividend, 0), Radius(dividend, 0), inverse, quotient.polynomial.data(),
                quotient.radius);
-  // The arctangent of a model that is not a node: its series about the constant term.
-  const double c = quotient.polynomial[0];
-  Model d = quotient;
-  d.polynomial[0] = 0;
-  const Interval range = RangeOfParts(quotient.polynomial, quotient.radius);
-  std::vector<Interval> at_centre(degree_ + 2), at_range(degree_ + 2);
-  if (!Jet(CodeOp::kAtan, range, at_range) || !Jet(CodeOp::kAtan, Interval::Point(c), at_centre))
-    return false;
-  double reach = 1;
-  const Interval beyond = range - Interval::Point(c);
-  for (size_t k = 0; k <= degree_; ++k) reach = Above(reach * Magnitude(beyond));
   Model sum;
-  const auto [top, top_error] = Centred(at_centre[degree_]);
-  sum.polynomial.assign(count_, 0.0);
-  sum.polynomial[0] = top;
-  sum.radius = top_error;
-  Model next;
-  for (size_t k = degree_; k-- > 0;) {
-    Multiply(sum, d, next);
-    std::swap(sum, next);
-    const auto [g, error] = Centred(at_centre[k]);
-    sum.polynomial[0] += g;
-    sum.radius = Above(sum.radius + error + std::fabs(sum.polynomial[0]) * Roundings(1));
-  }
-  double total = Above(sum.radius + Above(Magnitude(at_range[degree_ + 1]) * reach));
+  if (!Compose(CodeOp::kAtan, std::move(quotient), sum)) return false;
+  double total = sum.radius;
   std::copy(sum.polynomial.begin(), sum.polynomial.end(), out);
   if (upper || lower) {
     // pi/2 - atan(x / y), with the sign of y
@@ -503,30 +479,14 @@ bool ModelSeries::Compute(size_t order, const std::vector<Branch>& branches,
         }
         break;
       case CodeOp::kSine:
-        if (order == 0) {
-          if (!Function(c.op, c.a, model)) return false;
-          assign(n, model);
-        } else {
-          const double error = Convolution(node.sums[0], order, scratch_.data());
-          scale(n, share, error);
-        }
-        break;
       case CodeOp::kCosine:
-        if (order == 0) {
-          if (!Function(c.op, c.a, model)) return false;
-          assign(n, model);
-        } else {
-          const double error = Convolution(node.sums[0], order, scratch_.data());
-          scale(n, -share, error);
-        }
-        break;
       case CodeOp::kExp:
         if (order == 0) {
           if (!Function(c.op, c.a, model)) return false;
           assign(n, model);
         } else {
           const double error = Convolution(node.sums[0], order, scratch_.data());
-          scale(n, share, error);
+          scale(n, c.op == CodeOp::kCosine ? -share : share, error);
         }
         break;
       case CodeOp::kLog:

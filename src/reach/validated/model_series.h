@@ -93,7 +93,8 @@ class ModelSeries {
   double Convolution(const Sum& sum, size_t order, double* out);
   double Truncation(const double* left, const double* right) const;
   void Finish(size_t node, size_t order);
-  bool Function(CodeOp function, size_t argument, Model& out);
+  bool Function(CodeOp function, size_t argument, Model& out) const;
+  bool Compose(CodeOp function, Model argument, Model& out) const;
   bool Arctangent2(size_t y, size_t x, double* out, double& radius);
   void Multiply(const Model& a, const Model& b, Model& out) const;
   void MultiplyInto(const double* a, double a_radius, const Model& b, double* out, double& radius) const;

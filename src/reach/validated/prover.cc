@@ -77,11 +77,7 @@ base::Result<Compiled> CompileAll(const Problem& problem) {
   if (!observed.ok()) return observed.error();
   c.observed = std::move(observed).value();
   if (problem.controller) {
-    std::vector<TermId> updates = problem.states;
-    for (size_t i = 0; i < updates.size(); ++i) {
-      if (problem.controller->updates[i]) updates[i] = *problem.controller->updates[i];
-    }
-    auto map = Compile(arena, variables, updates);
+    auto map = Compile(arena, variables, Updated(problem));
     if (!map.ok()) return map.error();
     c.updates = std::move(map).value();
     c.period = problem.controller->period.ToDouble();
@@ -550,9 +546,10 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
   auto made = CompileAll(problem);
   if (!made.ok()) return made.error();
   const Compiled compiled = std::move(made).value();
-  auto trajectories = Trajectories::Of(problem);
-  if (!trajectories.ok()) return trajectories.error();
-  Search search(problem, compiled, options, const_cast<Trajectories&>(trajectories.value()), stop);
+  auto found = Trajectories::Of(problem);
+  if (!found.ok()) return found.error();
+  Trajectories trajectories = std::move(found).value();
+  Search search(problem, compiled, options, trajectories, stop);
 
   std::vector<interval::Box> open{problem.initial};
   Proved proved;

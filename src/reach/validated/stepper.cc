@@ -9,7 +9,6 @@ namespace rondo::reach {
 
 namespace {
 
-double Magnitude(Interval i) { return std::fmax(std::fabs(i.lo), std::fabs(i.hi)); }
 double RadiusOf(Interval i) { return Above((i.hi - i.lo) * 0.5); }
 Interval Around(double radius) { return {-radius, radius}; }
 bool Inside(Interval inner, Interval outer) { return outer.lo < inner.lo && inner.hi < outer.hi; }
@@ -73,30 +72,28 @@ bool Stepper::Series(const FlowSet& set, size_t order) {
 bool Stepper::Advance(const FlowSet& set, double h, double least, size_t order) {
   order_ = order;
   for (size_t i = 0; i < states_; ++i) error_[static_cast<Eigen::Index>(i)] = set.Error(i);
-  const bool kinks = !dynamics_.program.kinks.empty();
-  if (kinks) {
-    for (size_t i = 0; i < states_; ++i)
-      during_[i] =
-          RangeOf(*monomials_, set.Polynomial(i)) + Around(error_[static_cast<Eigen::Index>(i)] * 1.01);
-    Decide(during_);
-  }
-  if (!Series(set, order)) return false;
+  if (!Begin(set)) return false;
   while (h >= least) {
     if (Try(set, h)) {
       h_ = h;
       return true;
     }
     h *= 0.5;
-    if (kinks) {
-      // Branches may have been decided for a larger step.
-      for (size_t i = 0; i < states_; ++i)
-        during_[i] =
-            RangeOf(*monomials_, set.Polynomial(i)) + Around(error_[static_cast<Eigen::Index>(i)] * 1.01);
-      Decide(during_);
-      if (!Series(set, order)) return false;
-    }
+    // Branches may have been decided for a larger step.
+    if (!dynamics_.program.kinks.empty() && !Begin(set)) return false;
   }
   return false;
+}
+
+// The series from the set, with the branches that hold where it is.
+bool Stepper::Begin(const FlowSet& set) {
+  if (!dynamics_.program.kinks.empty()) {
+    for (size_t i = 0; i < states_; ++i)
+      during_[i] =
+          RangeOf(*monomials_, set.Polynomial(i)) + Around(error_[static_cast<Eigen::Index>(i)] * 1.01);
+    Decide(during_);
+  }
+  return Series(set, order_);
 }
 
 // Is there a box that the flow cannot leave within h? Then every term is enclosed on it.
@@ -157,7 +154,7 @@ bool Stepper::Try(const FlowSet& set, double h) {
     for (const uint32_t k : p.kinks) {
       if (branches_[k] == Branch::kEither) sources_.push_back(k);
     }
-    const bool more = !dynamics_.inputs.empty() || !sources_.empty();
+    const bool more = Driven();
     BoxSeries& linear = more ? wide_ : rest_;
     if (more) {
       for (size_t i = 0; i < states_; ++i) wide_.SetVariable(i, 0, box[i]);
@@ -284,10 +281,10 @@ bool Stepper::Observe() {
   for (size_t k = 0; k <= order_ + 1; ++k) {
     if (!rest_.Compute(k, branches_, nominal_, false, k == order_ + 1 ? 0 : p.core_end, end)) return false;
   }
-  const bool more = !dynamics_.inputs.empty() || !sources_.empty();
-  if (more && !wide_.Compute(0, branches_, held_, false, p.core_end, end)) return false;
+  if (Driven() && !wide_.Compute(0, branches_, held_, false, p.core_end, end)) return false;
   std::vector<uint32_t> outputs(p.outputs.begin() + static_cast<std::ptrdiff_t>(states_), p.outputs.end());
-  (more ? wide_ : rest_).Gradient(outputs, branches_, sources_, false, observed_gradient_, p.core_end, end);
+  (Driven() ? wide_ : rest_)
+      .Gradient(outputs, branches_, sources_, false, observed_gradient_, p.core_end, end);
   observed_ = Known::kDefined;
   return true;
 }
@@ -307,15 +304,12 @@ Interval Stepper::Observed(size_t observed, double from, double to, bool tight) 
              RadiusOf(held_[sources_[s]]);
   const Interval enclosed = Polynomial(node, from, to, tight) + Rest(node, to) + Around(Above(error));
   // On the box that holds the step, it may be sharper still.
-  const Interval box = wide_.Of(node, 0);
-  const bool have = !dynamics_.inputs.empty() || !sources_.empty();
-  return interval::Meet(enclosed, have ? box : rest_.Of(node, 0));
+  return interval::Meet(enclosed, Enclosure().Of(node, 0));
 }
 
 Interval Stepper::ObservedRate(size_t observed) {
   if (!Observe()) return {};
   const Program& p = dynamics_.program;
-  const bool more = !dynamics_.inputs.empty() || !sources_.empty();
   const size_t width = p.variables.size() + sources_.size();
   // What it depends on besides the states may jump.
   for (size_t v = states_; v < width; ++v) {
@@ -323,7 +317,7 @@ Interval Stepper::ObservedRate(size_t observed) {
   }
   Interval sum = Interval::Point(0);
   for (size_t j = 0; j < states_; ++j)
-    sum = sum + observed_gradient_[observed * width + j] * (more ? wide_ : rest_).Of(p.outputs[j], 0);
+    sum = sum + observed_gradient_[observed * width + j] * Enclosure().Of(p.outputs[j], 0);
   return sum;
 }
 

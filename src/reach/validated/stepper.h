@@ -66,13 +66,17 @@ class Stepper {
   /// audits.
   Interval StateAt(size_t state, std::span<const double> symbols, double t) const;
 
-  const Monomials& monomials() const { return *monomials_; }
+  Monomials& monomials() const { return *monomials_; }
 
  private:
   /// Computes what `Observed` needs. False if some function is not defined.
   bool Observe();
   bool Series(const FlowSet& set, size_t order);
+  bool Begin(const FlowSet& set);
   void Decide(const interval::Box& box);
+  /// Does anything but the states drive them? Then `wide_` is the enclosure for all of it.
+  bool Driven() const { return !dynamics_.inputs.empty() || !sources_.empty(); }
+  const BoxSeries& Enclosure() const { return Driven() ? wide_ : rest_; }
   bool Try(const FlowSet& set, double h);
   Interval Polynomial(size_t node, double from, double to, bool tight) const;
   Interval Rest(size_t node, double to) const;

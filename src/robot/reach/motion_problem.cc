@@ -64,6 +64,21 @@ class Builder {
   }
 
  private:
+  // Where a variable may be.
+  std::vector<TermId> Range(const Variable& v) {
+    std::vector<TermId> bounds;
+    if (v.least) bounds.push_back(arena_.Le(*v.least, v.term));
+    if (v.most) bounds.push_back(arena_.Le(v.term, *v.most));
+    return bounds;
+  }
+
+  // All that makes the states change.
+  std::vector<TermId> Motion() const {
+    std::vector<TermId> terms = out_.problem.rates;
+    for (const TermId t : reach::Updated(out_.problem)) terms.push_back(t);
+    return terms;
+  }
+
   TermId Zero() { return arena_.Number(arena_.Real(), Rational(0)); }
 
   bool Sampled(TermId input) const {
@@ -155,12 +170,7 @@ class Builder {
   // What the equations mention and nobody sets.
   std::string Inputs() {
     reach::Problem& p = out_.problem;
-    std::vector<TermId> terms = p.rates;
-    if (p.controller) {
-      for (const auto& update : p.controller->updates) {
-        if (update) terms.push_back(*update);
-      }
-    }
+    std::vector<TermId> terms = Motion();
     std::vector<TermId> about = {motion_.contract.pre, motion_.contract.during, motion_.contract.post};
     terms.insert(terms.end(), about.begin(), about.end());
     std::unordered_map<TermId, const Variable*> known;
@@ -228,8 +238,7 @@ class Builder {
         conditions.push_back(arena_.Eq(p.states[i], Zero()));
         continue;
       }
-      if (v->least) conditions.push_back(arena_.Le(*v->least, p.states[i]));
-      if (v->most) conditions.push_back(arena_.Le(p.states[i], *v->most));
+      for (const TermId bound : Range(*v)) conditions.push_back(bound);
     }
     p.assume = arena_.And(conditions);
     // What it says about inputs is about the moment of the start: it only bounds states where it must.
@@ -278,12 +287,7 @@ class Builder {
   std::string ForEver() {
     if (motion_.duration) return "";
     reach::Problem& p = out_.problem;
-    std::vector<TermId> terms = p.rates;
-    if (p.controller) {
-      for (const auto& update : p.controller->updates) {
-        if (update) terms.push_back(*update);
-      }
-    }
+    std::vector<TermId> terms = Motion();
     terms.push_back(motion_.contract.during);
     terms.push_back(motion_.contract.pre);
     if (VariablesOf(arena_, terms).contains(world_.clock))
@@ -299,8 +303,7 @@ class Builder {
         // What nobody sets is as it was.
         const auto at = static_cast<size_t>(std::ranges::find(p.states, v.term) - p.states.begin());
         if (p.rates[at] == Zero() && !(p.controller && p.controller->updates[at])) continue;
-        if (v.least) again.push_back(arena_.Le(*v.least, v.term));
-        if (v.most) again.push_back(arena_.Le(v.term, *v.most));
+        for (const TermId bound : Range(v)) again.push_back(bound);
       }
     }
     p.claims.push_back({"back where it may begin", arena_.And(again), p.horizon, p.horizon});
@@ -342,9 +345,7 @@ class Builder {
       if (!motion_.contract.modifies[i] ||
           std::ranges::find(motion_.visible, v.term) != motion_.visible.end())
         continue;
-      std::vector<TermId> range;
-      if (v.least) range.push_back(arena_.Le(*v.least, v.term));
-      if (v.most) range.push_back(arena_.Le(v.term, *v.most));
+      const std::vector<TermId> range = Range(v);
       if (!range.empty())
         p.claims.push_back(
             {fmt::format("{} in its range", v.name.text), arena_.And(range), start, p.horizon});
