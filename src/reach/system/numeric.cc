@@ -82,6 +82,15 @@ base::Result<Trajectories> Trajectories::Of(const Problem& problem) {
     if (!program.ok()) return program.error();
     return Compiled{std::move(formula).value(), std::move(program).value()};
   };
+  for (const Event& e : problem.events) {
+    auto condition = compile(e.condition);
+    if (!condition.ok()) return condition.error();
+    std::vector<TermId> values = problem.states;
+    for (size_t i = 0; i < values.size(); ++i) values[i] = e.updates[i].value_or(values[i]);
+    auto after = Compile(*problem.arena, problem.states, values);
+    if (!after.ok()) return after.error();
+    t.events_.push_back({std::move(condition).value(), std::move(after).value()});
+  }
   for (const Claim& c : problem.claims) {
     auto compiled = compile(c.formula);
     if (!compiled.ok()) return compiled.error();
@@ -102,6 +111,36 @@ double Trajectories::MissOf(const Compiled& compiled, std::span<const double> st
 
 double Trajectories::Miss(size_t c, std::span<const double> state) { return MissOf(claims_[c], state); }
 double Trajectories::MissAssumed(std::span<const double> state) { return MissOf(assumed_[0], state); }
+
+// Is there an event that happens in this state?
+bool Trajectories::Happens(std::span<const double> state) {
+  std::vector<double> next(state.size());
+  for (const Happening& e : events_) {
+    if (MissOf(e.condition, state) > 0) continue;
+    Evaluator after(e.after);
+    after(state, next);
+    if (!std::ranges::equal(next, state)) return true;
+  }
+  return false;
+}
+
+// All that happens in this state, one after the other. False if there is no end to it.
+bool Trajectories::Settle(std::vector<double>& state) {
+  std::vector<double> next(state.size());
+  for (int round = 0; round < 32; ++round) {
+    bool any = false;
+    for (const Happening& e : events_) {
+      if (MissOf(e.condition, state) > 0) continue;
+      Evaluator after(e.after);
+      after(state, next);
+      any = any || next != state;
+      state = next;
+      if (any) break;
+    }
+    if (!any) return true;
+  }
+  return false;
+}
 
 bool Trajectories::Run(const Course& course, double resolution,
                        const std::function<bool(double, std::span<const double>)>& visit, double tolerance) {
@@ -126,7 +165,41 @@ bool Trajectories::Run(const Course& course, double resolution,
   double suggested = 1e-7 * horizon;
   double t = 0;
   const size_t samples = Samples(*problem_);
-  if (!problem_->controller && !visit(0, x)) return true;
+  if (!problem_->controller) {
+    if (!Settle(x)) return false;
+    if (!visit(0, x)) return true;
+  }
+  // From t to `next`.
+  const auto integrate = [&](std::vector<double>& state, double from, double next) {
+    auto stepper =
+        odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_fehlberg78<std::vector<double>>());
+    double at = from;
+    double dt = std::min(suggested, next - from);  // too long a step of a stiff system has no end
+    int tries = 0;
+    while (at < next) {
+      dt = std::min(dt, next - at);
+      const bool good = stepper.try_step(system, state, at, dt) == odeint::success;
+      if (++tries > 2'000'000 || (!good && dt < 1e-16)) return false;
+      if (good) suggested = std::max(dt, 1e-9 * horizon);
+      if (next - at < 1e-14) break;
+    }
+    return std::ranges::all_of(state, [](double v) { return std::isfinite(v); });
+  };
+  // The instant at which the first event of (t, next] happens, and the state then: `x` at t, `end` at next.
+  const auto locate = [&](double from, double& next, std::vector<double>& end) {
+    while (next - from > 1e-12 * (1 + std::fabs(next))) {
+      const double middle = from + (next - from) / 2;
+      std::vector<double> there = x;
+      if (middle <= from || middle >= next || !integrate(there, from, middle)) return;
+      if (Happens(there)) {
+        next = middle;
+        end = there;
+      } else {
+        from = middle;
+        x = there;
+      }
+    }
+  };
   for (size_t sample = 0; t < horizon; ++sample) {
     set_inputs(t);
     if (sample < samples) {
@@ -134,6 +207,7 @@ bool Trajectories::Run(const Course& course, double resolution,
       std::vector<double> next(n);
       update(all, next);
       x = next;
+      if (!Settle(x)) return false;
       if (!visit(t, x)) return true;
     }
     const double end =
@@ -143,21 +217,14 @@ bool Trajectories::Run(const Course& course, double resolution,
       if (inputs > 0 && !course.inputs.empty())
         next = std::min(next, course.input_period * (std::floor(t / course.input_period + 1e-9) + 1));
       set_inputs(t);
-      auto stepper = odeint::make_controlled(tolerance, tolerance,
-                                             odeint::runge_kutta_fehlberg78<std::vector<double>>());
-      double at = t;
-      double dt = std::min(suggested, next - t);  // too long a step of a stiff system has no end
-      int tries = 0;
-      while (at < next) {
-        dt = std::min(dt, next - at);
-        const bool good = stepper.try_step(system, x, at, dt) == odeint::success;
-        if (++tries > 2'000'000 || (!good && dt < 1e-16)) return false;
-        if (good) suggested = std::max(dt, 1e-9 * horizon);
-        if (next - at < 1e-14) break;
+      std::vector<double> end_state = x;
+      if (!integrate(end_state, t, next)) return false;
+      if (Happens(end_state)) {
+        locate(t, next, end_state);
+        if (!visit(next, end_state)) return true;
+        if (!Settle(end_state)) return false;
       }
-      for (const double v : x) {
-        if (!std::isfinite(v)) return false;
-      }
+      x = std::move(end_state);
       t = next;
       if (!visit(t, x)) return true;
     }

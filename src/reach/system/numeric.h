@@ -45,8 +45,9 @@ class Trajectories {
   static base::Result<Trajectories> Of(const Problem& problem);
 
   /// Calls `visit` with increasing times, the start (as the controller leaves it), both sides of each later
-  /// sampling instant and the horizon included, at most `resolution` seconds apart, until it returns false.
-  /// False if the state is not finite any more.
+  /// sampling instant and of each event and the horizon included, at most `resolution` seconds apart, until
+  /// it returns false. An event whose condition holds for less than that may be missed. False if the state is
+  /// not finite any more, or if events follow one another without end.
   bool Run(const Course& course, double resolution,
            const std::function<bool(double, std::span<const double>)>& visit, double tolerance = 1e-13);
   /// How far claim `c` is from holding in this state.
@@ -64,12 +65,19 @@ class Trajectories {
     Formula formula;
     Program program;
   };
+  struct Happening {
+    Compiled condition;
+    Program after;
+  };
   double MissOf(const Compiled& compiled, std::span<const double> state);
+  bool Happens(std::span<const double> state);
+  bool Settle(std::vector<double>& state);
 
   const Problem* problem_ = nullptr;
   Program rates_, updates_;
   std::vector<Compiled> claims_;
   std::vector<Compiled> assumed_;
+  std::vector<Happening> events_;
 };
 
 }  // namespace rondo::reach

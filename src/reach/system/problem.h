@@ -23,6 +23,19 @@ struct Input {
   Interval bounds;
 };
 
+/// Something that happens as soon as its condition holds: discrete states take new values, all at once. What
+/// events set are discrete states: their rates are zero, they have one value at the start, and what they are
+/// set to depends on discrete states only.
+///
+/// An event happens at the first instant at which its condition begins to hold for some time (the infimum, if
+/// there is no first one); other events may follow at the same instant. Where a condition holds for a single
+/// instant only, its event may happen or not.
+struct Event {
+  TermId condition;
+  /// By state; a state without a value keeps its own.
+  std::vector<std::optional<TermId>> updates;
+};
+
 /// What must hold at every instant of [from, to].
 struct Claim {
   std::string name;
@@ -41,6 +54,7 @@ struct Problem {
   std::vector<TermId> rates;  ///< x' by state
   std::vector<Input> inputs;
   std::optional<Controller> controller;
+  std::vector<Event> events;
   interval::Box initial;
   /// By state: its exact value at the start, where there is only one. Empty: none is known.
   std::vector<std::optional<Rational>> pinned;

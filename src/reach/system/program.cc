@@ -151,8 +151,10 @@ class Compiler {
         return Product(Number(args[0]), Push({CodeOp::kReciprocal, Number(args[1])}));
       case Op::kElementary:
         return Function(t);
-      case Op::kIte:
-        return Choose(args[0], args[1], args[2]);
+      case Op::kIte: {
+        const uint32_t then = Number(args[1]);
+        return Choose(args[0], then, Number(args[2]));
+      }
       case Op::kVariable:
         return Unknown(
             fmt::format("`{}` is neither a state nor an input", arena_.symbol(arena_.symbol_of(t)).name));
@@ -212,51 +214,40 @@ class Compiler {
     return 0;
   }
 
-  uint32_t Choose(TermId condition, TermId then, TermId otherwise) {
+  // `then` where the condition holds, else `otherwise`: nodes.
+  uint32_t Choose(TermId condition, uint32_t then, uint32_t otherwise) {
+    const auto args = arena_.args(condition);
+    const auto gap = [&](size_t less, size_t more) {
+      return Linear({{Rational(1), Number(args[less])}, {Rational(-1), Number(args[more])}}, Rational(0));
+    };
     switch (arena_.op(condition)) {
       case Op::kBool:
-        return Number(condition == arena_.True() ? then : otherwise);
+        return condition == arena_.True() ? then : otherwise;
       case Op::kNot:
-        return Choose(arena_.arg(condition, 0), otherwise, then);
+        return Choose(args[0], otherwise, then);
       case Op::kLe:
-      case Op::kLt: {
-        const uint32_t gap = Linear({{Rational(1), Number(arena_.arg(condition, 0))},
-                                     {Rational(-1), Number(arena_.arg(condition, 1))}},
-                                    Rational(0));
-        return Push({CodeOp::kChoose, gap, Number(then), Number(otherwise)});
+        return Push({CodeOp::kChoose, gap(0, 1), then, otherwise});
+      case Op::kLt:
+        return Push({CodeOp::kChoose, gap(1, 0), otherwise, then});
+      case Op::kEq: {
+        if (arena_.sort_of(args[0]) != arena_.Real()) break;
+        const uint32_t below = Push({CodeOp::kChoose, gap(1, 0), then, otherwise});
+        return Push({CodeOp::kChoose, gap(0, 1), below, otherwise});
       }
-      case Op::kAnd:
+      case Op::kAnd: {
+        uint32_t result = then;
+        for (size_t i = args.size(); i-- > 0;) result = Choose(args[i], result, otherwise);
+        return result;
+      }
       case Op::kOr: {
-        // if a and b then x else y  =  if a then (if b then x else y) else y
-        const bool conjunction = arena_.op(condition) == Op::kAnd;
-        const auto args = arena_.args(condition);
-        uint32_t result = Number(conjunction ? then : otherwise);
-        const uint32_t other = Number(conjunction ? otherwise : then);
-        for (size_t i = args.size(); i-- > 0;) {
-          const auto gap = Gap(args[i]);
-          if (!gap) return Unknown("a condition that is no combination of comparisons");
-          const auto [node, positive] = *gap;
-          result = positive == conjunction ? Push({CodeOp::kChoose, node, result, other})
-                                           : Push({CodeOp::kChoose, node, other, result});
-        }
+        uint32_t result = otherwise;
+        for (size_t i = args.size(); i-- > 0;) result = Choose(args[i], then, result);
         return result;
       }
       default:
-        return Unknown("a condition that is no combination of comparisons");
+        break;
     }
-  }
-  // The node that is <= 0 where the comparison holds (or, if not positive, where it does not).
-  std::optional<std::pair<uint32_t, bool>> Gap(TermId condition) {
-    bool positive = true;
-    if (arena_.op(condition) == Op::kNot) {
-      condition = arena_.arg(condition, 0);
-      positive = false;
-    }
-    if (arena_.op(condition) != Op::kLe && arena_.op(condition) != Op::kLt) return std::nullopt;
-    const uint32_t gap = Linear(
-        {{Rational(1), Number(arena_.arg(condition, 0))}, {Rational(-1), Number(arena_.arg(condition, 1))}},
-        Rational(0));
-    return std::pair{gap, positive};
+    return Unknown("a condition that is no combination of comparisons");
   }
 
   const expr::Arena& arena_;

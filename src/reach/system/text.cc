@@ -34,6 +34,15 @@ class Writer {
         text_ += fmt::format("set x{} {}\n", i, value);
       }
     }
+    for (const Event& e : p_.events) {
+      const std::string condition = Term(e.condition);
+      text_ += fmt::format("when {}\n", condition);
+      for (size_t i = 0; i < p_.states.size(); ++i) {
+        if (!e.updates[i]) continue;
+        const std::string value = Term(*e.updates[i]);
+        text_ += fmt::format("set x{} {}\n", i, value);
+      }
+    }
     const std::string assumed = Term(p_.assume);
     text_ += fmt::format("assume {}\nhorizon {}\n", assumed, p_.horizon.ToString());
     for (const Claim& c : p_.claims) {

@@ -88,6 +88,7 @@ bool Flow::Step(double until) {
       degree = std::fmax(degree, stepper_.DegreeError(i) /
                                      (share * options_.degree_tolerance * radius + least + 1e-14 * largest_));
     }
+
     if (!(series < 1e300)) return false;
     double factor = std::clamp(
         0.9 * std::pow(std::fmax(series, 1e-12), -1.0 / static_cast<double>(options_.order + 1)), 0.3, 1.5);
@@ -113,17 +114,19 @@ bool Flow::Step(double until) {
     ++steps_;
     ++since_event_;
     if (last) {
-      // The instant that is meant differs from the sum of the steps by roundings: what the flow does
-      // meanwhile.
-      const double late = static_cast<double>(since_event_ + 4) * 0x1p-50 * std::fabs(until);
-      for (size_t i = 0; i < n; ++i) {
-        set_.slack[i] = Above(set_.slack[i] + late * Magnitude(stepper_.Rate(i)));
-      }
+      Settle(set_, until);
       since_event_ = 0;
     }
     AdaptDegree();
     return true;
   }
+}
+
+// The instant that is meant differs from the sum of the steps by roundings: what the flow does meanwhile.
+void Flow::Settle(FlowSet& set, double time) const {
+  const double late = static_cast<double>(since_event_ + 4) * 0x1p-50 * std::fabs(time);
+  for (size_t i = 0; i < set.dimension; ++i)
+    set.slack[i] = Above(set.slack[i] + late * Magnitude(stepper_.Rate(i)));
 }
 
 void Flow::AdaptDegree() {

@@ -42,8 +42,14 @@ class Flow {
   size_t steps() const { return steps_; }
   /// Encloses the states now.
   interval::Box Now() const;
+  /// What the next step should be like.
+  double next_step() const { return h_; }
+  /// `set` is where the last step began, and will be used elsewhere: the roundings of the steps up to there
+  /// become errors.
+  void Settle(FlowSet& set) const { Settle(set, begin_); }
 
  private:
+  void Settle(FlowSet& set, double time) const;
   size_t MostDegree() const;
   void AdaptDegree();
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "base/check.h"
@@ -121,6 +122,41 @@ FlowSet FromBox(const interval::Box& box, const Monomials& monomials, const std:
     }
   }
   return set;
+}
+
+FlowSet Half(const FlowSet& set, const Monomials& monomials, size_t symbol, bool upper) {
+  std::map<std::vector<uint8_t>, size_t> index;
+  for (size_t m = 0; m < set.count; ++m) {
+    const auto e = monomials.Exponents(m);
+    index.emplace(std::vector<uint8_t>(e.begin(), e.end()), m);
+  }
+  FlowSet half = set;
+  std::fill(half.polynomials.begin(), half.polynomials.end(), 0.0);
+  std::vector<double> added(half.dimension * half.count);  // magnitudes, for roundings
+  for (size_t m = 0; m < set.count; ++m) {
+    // s^e = (1/2)^e (c + r)^e with c = -1 or 1: terms of degree k in r.
+    const auto exponents = monomials.Exponents(m);
+    std::vector<uint8_t> e(exponents.begin(), exponents.end());
+    const unsigned power = e[symbol];
+    double binomial = std::ldexp(1.0, -static_cast<int>(power));
+    for (unsigned k = 0; k <= power; ++k) {
+      e[symbol] = static_cast<uint8_t>(k);
+      const double factor = !upper && (power - k) % 2 == 1 ? -binomial : binomial;
+      const size_t to = index.at(e);
+      for (size_t i = 0; i < set.dimension; ++i) {
+        const double term = set.Polynomial(i)[m] * factor;  // exact: a small integer over a power of two, but
+        half.Polynomial(i)[to] += term;                     // for the roundings of the product
+        added[i * half.count + to] += std::fabs(term);
+      }
+      binomial = binomial * (power - k) / (k + 1);
+    }
+  }
+  for (size_t i = 0; i < set.dimension; ++i) {
+    double sum = 0;
+    for (size_t m = 0; m < half.count; ++m) sum += added[i * half.count + m];
+    half.slack[i] = Above(half.slack[i] + sum * Roundings(static_cast<double>(set.degree) + 4));
+  }
+  return half;
 }
 
 Interval RangeOf(const Monomials& monomials, std::span<const double> p) {

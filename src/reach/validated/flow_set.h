@@ -51,6 +51,10 @@ struct FlowSet {
 /// for none.
 FlowSet FromBox(const interval::Box& box, const Monomials& monomials, const std::vector<int>& symbol_of);
 
+/// The part of the set whose symbol `symbol` is in [-1, 0] or (upper) [0, 1], with a symbol of its own for
+/// it.
+FlowSet Half(const FlowSet& set, const Monomials& monomials, size_t symbol, bool upper);
+
 /// Encloses a polynomial over [-1, 1]^m.
 Interval RangeOf(const Monomials& monomials, std::span<const double> polynomial);
 

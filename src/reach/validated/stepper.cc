@@ -321,6 +321,30 @@ Interval Stepper::ObservedRate(size_t observed) {
   return sum;
 }
 
+Interval Stepper::ObservedSecond(size_t observed) {
+  if (!Observe()) return {};
+  const Program& p = dynamics_.program;
+  const size_t width = p.variables.size() + sources_.size();
+  const auto pushed = [&](const std::vector<Interval>& gradient, size_t row) {
+    return std::any_of(gradient.begin() + static_cast<std::ptrdiff_t>(row * width + states_),
+                       gradient.begin() + static_cast<std::ptrdiff_t>((row + 1) * width),
+                       [](Interval d) { return d != Interval::Point(0); });
+  };
+  if (pushed(observed_gradient_, observed)) return {};
+  // The states that it depends on, those that these depend on, and so on.
+  std::vector<bool> seen(p.variables.size());
+  std::vector<uint32_t> open = p.depends[p.outputs[states_ + observed]];
+  while (!open.empty()) {
+    const uint32_t v = open.back();
+    open.pop_back();
+    if (v >= states_ || seen[v]) continue;
+    if (pushed(gradient_, v)) return {};
+    seen[v] = true;
+    open.insert(open.end(), p.depends[p.outputs[v]].begin(), p.depends[p.outputs[v]].end());
+  }
+  return Interval::Point(2) * rest_.Of(p.outputs[states_ + observed], 2);
+}
+
 bool Stepper::StaysBelow(size_t observed) {
   if (!Observe()) return false;
   if (ObservedRate(observed).hi <= 0) return true;

@@ -56,6 +56,9 @@ class Stepper {
   Interval Observed(size_t observed, double from, double to, bool tight);
   /// Encloses the derivative of an output during the step, for all inputs.
   Interval ObservedRate(size_t observed);
+  /// Encloses the second derivative of an output during the step; everything, if inputs or held nodes have
+  /// anything to do with it.
+  Interval ObservedSecond(size_t observed);
   /// Does an output g that is not positive when the step begins stay so? Shown by g' <= r g along every
   /// course, for some number r: then g(t) <= exp(r t) g(0). Only for outputs that are linear in the states,
   /// or fall anyway.

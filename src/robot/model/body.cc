@@ -197,6 +197,43 @@ bool HasParameter(const RobotDef& type, std::string_view name) {
   return false;
 }
 
+namespace {
+
+// `x = ...` for some of these variables, each at most once.
+void ReadLaws(const Body& body, const std::vector<Derivative>& laws,
+              std::initializer_list<const std::vector<Variable>*> lists, const Scope& scope, Evaluator& e,
+              std::vector<std::pair<TermId, TermId>>& out) {
+  const bool inputs = lists.size() > 1;
+  for (const Derivative& law : laws) {
+    const Variable* variable = nullptr;
+    for (const auto* list : lists) {
+      for (const Variable& v : *list) {
+        if (v.name.text == law.variable.text) variable = &v;
+      }
+    }
+    if (variable == nullptr) {
+      e.diagnostics()
+          .Report(Kind::kChoreoUndeclared, law.variable.span,
+                  fmt::format("`{}` has no {}memory `{}`", body.type->name.text,
+                              inputs ? "input and no " : "", law.variable.text))
+          .Help(inputs ? "a controller sets inputs and memory; states follow `dynamics`"
+                       : "an event sets memory; inputs are set by laws, which may depend on it");
+      continue;
+    }
+    for (const auto& [known, value] : out) {
+      if (known == variable->term)
+        e.diagnostics().Report(Kind::kChoreoDuplicate, law.variable.span,
+                               fmt::format("`{}` is set twice", law.variable.text));
+    }
+    const auto value =
+        e.Measure(law.value, scope, variable->dimension,
+                  fmt::format("`{}`, in {},", law.variable.text, UnitText(variable->dimension)));
+    if (value) out.emplace_back(variable->term, *value);
+  }
+}
+
+}  // namespace
+
 Control ReadControl(const Body& body, const ControlDef& def, const Scope& scope, Evaluator& e) {
   Control control;
   if (def.period.valid()) {
@@ -208,30 +245,12 @@ Control ReadControl(const Body& body, const ControlDef& def, const Scope& scope,
       e.diagnostics().Report(Kind::kRobotType, e.SpanOf(def.period), "a period is a constant");
     }
   }
-  for (const Derivative& law : def.laws) {
-    const Variable* variable = nullptr;
-    for (const auto* list : {&body.inputs, &body.memory}) {
-      for (const Variable& v : *list) {
-        if (v.name.text == law.variable.text) variable = &v;
-      }
-    }
-    if (variable == nullptr) {
-      e.diagnostics()
-          .Report(
-              Kind::kChoreoUndeclared, law.variable.span,
-              fmt::format("`{}` has no input and no memory `{}`", body.type->name.text, law.variable.text))
-          .Help("a controller sets inputs and memory; states follow `dynamics`");
-      continue;
-    }
-    for (const auto& [known, value] : control.laws) {
-      if (known == variable->term)
-        e.diagnostics().Report(Kind::kChoreoDuplicate, law.variable.span,
-                               fmt::format("`{}` is set twice", law.variable.text));
-    }
-    const auto value =
-        e.Measure(law.value, scope, variable->dimension,
-                  fmt::format("`{}`, in {},", law.variable.text, UnitText(variable->dimension)));
-    if (value) control.laws.emplace_back(variable->term, *value);
+  ReadLaws(body, def.laws, {&body.inputs, &body.memory}, scope, e, control.laws);
+  for (const WhenDef& when : def.events) {
+    ControlEvent event;
+    event.condition = e.Formula(when.condition, scope, "the condition of an event");
+    ReadLaws(body, when.updates, {&body.memory}, scope, e, event.updates);
+    control.events.push_back(std::move(event));
   }
   return control;
 }

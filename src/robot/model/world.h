@@ -18,10 +18,18 @@ struct Variable {
   std::optional<TermId> least, most;
 };
 
-/// How inputs and memory are set: once in each period, all at once, or without a period at all times.
+/// What happens as soon as a condition holds.
+struct ControlEvent {
+  TermId condition;
+  std::vector<std::pair<TermId, TermId>> updates;  ///< (memory, value)
+};
+
+/// How inputs and memory are set: once in each period, all at once, or without a period at all times; and by
+/// events.
 struct Control {
   std::optional<TermId> period;
   std::vector<std::pair<TermId, TermId>> laws;  ///< (input or memory, value)
+  std::vector<ControlEvent> events;
 };
 
 /// A robot in a world: its variables, frames and shapes as terms. The variable `x` of the robot `cart` is the

@@ -76,7 +76,15 @@ class Builder {
   std::vector<TermId> Motion() const {
     std::vector<TermId> terms = out_.problem.rates;
     for (const TermId t : reach::Updated(out_.problem)) terms.push_back(t);
+    if (motion_.control) AddEvents(*motion_.control, terms);
     return terms;
+  }
+
+  static void AddEvents(const Control& control, std::vector<TermId>& terms) {
+    for (const ControlEvent& event : control.events) {
+      terms.push_back(event.condition);
+      for (const auto& [variable, value] : event.updates) terms.push_back(value);
+    }
   }
 
   TermId Zero() { return arena_.Number(arena_.Real(), Rational(0)); }
@@ -90,6 +98,7 @@ class Builder {
   bool ReadBeforeSet(TermId input) const {
     std::vector<TermId> terms{motion_.contract.pre};
     for (const auto& [variable, value] : motion_.control->laws) terms.push_back(value);
+    AddEvents(*motion_.control, terms);
     return VariablesOf(arena_, terms).contains(input);
   }
 
@@ -109,6 +118,7 @@ class Builder {
     }
     if (motion_.control) {
       for (const auto& [variable, value] : motion_.control->laws) terms.push_back(value);
+      AddEvents(*motion_.control, terms);
     }
     return VariablesOf(arena_, terms).contains(world_.clock);
   }
@@ -163,6 +173,15 @@ class Builder {
         controller.updates[static_cast<size_t>(it - p.states.begin())] = value;
       }
       p.controller = std::move(controller);
+    }
+    for (const ControlEvent& event :
+         motion_.control ? motion_.control->events : std::vector<ControlEvent>{}) {
+      reach::Event e{substituted(event.condition), {}};
+      e.updates.resize(p.states.size());
+      for (const auto& [variable, value] : event.updates)
+        e.updates[static_cast<size_t>(std::ranges::find(p.states, variable) - p.states.begin())] =
+            substituted(value);
+      p.events.push_back(std::move(e));
     }
     return "";
   }
@@ -302,7 +321,9 @@ class Builder {
       for (const Variable& v : *list) {
         // What nobody sets is as it was.
         const auto at = static_cast<size_t>(std::ranges::find(p.states, v.term) - p.states.begin());
-        if (p.rates[at] == Zero() && !(p.controller && p.controller->updates[at])) continue;
+        const bool event =
+            std::ranges::any_of(p.events, [&](const reach::Event& e) { return e.updates[at].has_value(); });
+        if (p.rates[at] == Zero() && !(p.controller && p.controller->updates[at]) && !event) continue;
         for (const TermId bound : Range(v)) again.push_back(bound);
       }
     }

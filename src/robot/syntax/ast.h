@@ -69,12 +69,20 @@ struct DynamicsDef {
   std::vector<Derivative> derivatives;
 };
 
+/// `when x >= -100 m { phase = 1 }`: what happens as soon as a condition holds.
+struct WhenDef {
+  diag::Span span;
+  ExprId condition;
+  std::vector<Derivative> updates;
+};
+
 /// `control every 20 ms { vx = ...; sum = ... }`: how inputs and memory are set; without a period, at all
 /// times.
 struct ControlDef {
   diag::Span span;
   ExprId period;  ///< may be missing
   std::vector<Derivative> laws;
+  std::vector<WhenDef> events;
 };
 
 /// One line of a contract: `pre`, `assume`, `during`, `post`, `footprint`, `region`, `guarantee` with an

@@ -174,17 +174,35 @@ std::optional<ControlDef> Parser::ParseControl(Span start) {
   if (Accept("every")) control.period = ParseExpr();
   if (failed() || !Expect("{", "`control` or its period")) return std::nullopt;
   while (!At("}") && !AtKind(TokenKind::kEnd)) {
-    Derivative law;
-    law.variable = ParseName("an input or a memory");
-    if (!Expect("=", "what is set")) return std::nullopt;
-    law.value = ParseExpr();
+    if (At("when")) {
+      WhenDef event;
+      const Span when = Peek().span;
+      Take();
+      event.condition = ParseExpr();
+      event.span = when.To(PreviousSpan());
+      if (failed() || !Expect("{", "the condition of an event")) return std::nullopt;
+      while (!failed() && !At("}") && !AtKind(TokenKind::kEnd)) ParseLaw("a memory", event.updates);
+      if (failed() || !Expect("}", "the last value that an event sets")) return std::nullopt;
+      control.events.push_back(std::move(event));
+      Accept(";");
+    } else {
+      ParseLaw("an input or a memory", control.laws);
+    }
     if (failed()) return std::nullopt;
-    control.laws.push_back(std::move(law));
-    Accept(";");
   }
   Expect("}", "the last law of a controller");
   control.span = start.To(PreviousSpan());
   return control;
+}
+
+void Parser::ParseLaw(std::string_view what, std::vector<Derivative>& laws) {
+  Derivative law;
+  law.variable = ParseName(what);
+  if (failed() || !Expect("=", "what is set")) return;
+  law.value = ParseExpr();
+  if (failed()) return;
+  laws.push_back(std::move(law));
+  Accept(";");
 }
 
 Clause Parser::ParseClause() {

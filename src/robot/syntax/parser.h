@@ -36,6 +36,7 @@ class Parser : public lang::ExprParser {
   void ParseFrame(RobotDef& robot, Name keyword);
   void ParseDynamics(RobotDef& robot, diag::Span start);
   std::optional<ControlDef> ParseControl(diag::Span start);
+  void ParseLaw(std::string_view what, std::vector<Derivative>& laws);
   void ParseMotion(RobotDef& robot, diag::Span start);
   void ParseComponent(WorldDef& world);
   void ParseObstacle(WorldDef& world);

@@ -1,0 +1,369 @@
+// Events that a whole set meets transversally.
+#include <algorithm>
+#include <cmath>
+
+#include "reach/validated/bound.h"
+#include "reach/validated/runner.h"
+
+namespace rondo::reach {
+
+namespace {
+
+using Polynomial = std::vector<double>;
+
+constexpr size_t kMostProbes = 2000;
+
+Polynomial Times(const Monomials& monomials, const Polynomial& a, const Polynomial& b) {
+  Polynomial out(a.size(), 0.0);
+  const auto begin = monomials.pair_begin();
+  for (size_t k = 0; k < out.size(); ++k) {
+    for (uint32_t p = begin[k]; p < begin[k + 1]; ++p)
+      out[k] += a[monomials.left()[p]] * b[monomials.right()[p]];
+  }
+  return out;
+}
+
+// a / b, roughly: b is nearly constant.
+Polynomial Divide(const Monomials& monomials, const Polynomial& a, const Polynomial& b, size_t degree) {
+  const double c = b[0];
+  Polynomial rest = b;
+  for (double& x : rest) x /= -c;
+  rest[0] = 0;
+  Polynomial term = a;
+  for (double& x : term) x /= c;
+  Polynomial sum = term;
+  for (size_t k = 0; k < degree; ++k) {
+    term = Times(monomials, term, rest);
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += term[i];
+  }
+  return sum;
+}
+
+}  // namespace
+
+// A set in one mode meets one event.
+//
+// With a time q(s) for each start, the flow of q f over one unit of "time" leads each start to the boundary
+// of the condition, but for a residual. The flow of f' in the mode after, for the same time T for all of
+// them, lets them get over what the event has set off; then that of (W - q) f' leads all to the same instant,
+// W + T after the beginning. The true instant of the event differs from q(s) by at most the residual over the
+// least rate, and the true course from the enclosed one by at most that times |f - f'|.
+class Runner::Crossing {
+ public:
+  Crossing(Runner& runner, State& state, const Stage& stage) : r_(runner), state_(state), before_(stage) {}
+
+  Next Run(double until) {
+    if (!Probe(until)) return Next::kNo;
+    auto scaled = r_.stages_.For(before_.modes, true);
+    auto after = r_.stages_.For({guard_->after}, true);
+    auto plain = r_.stages_.For({guard_->after});
+    if (!scaled.ok() || !after.ok() || !plain.ok()) return Next::kNo;
+    if (!FindTime(*scaled.value())) return Next::kNo;
+    const size_t kept = r_.attempt_.leaf.tube.size();
+    const size_t steps = r_.attempt_.leaf.steps.size();
+    // Once more, looking at claims.
+    end_ = begin_ + window_;
+    FlowSet there;
+    Next next = Move(*scaled.value(), Extended(state_.set, time_), 1, true, there);
+    if (next == Next::kChanged) next = Switch(*scaled.value(), *after.value(), there);
+    guard_ = nullptr;
+    const double together = std::min(window_, 0.99 * (until - end_));
+    end_ += together;
+    if (next == Next::kChanged && together > 0)
+      next = Move(*plain.value(), FlowSet(there), together, true, there);
+    if (next == Next::kChanged) {
+      Polynomial rest = time_;
+      for (double& x : rest) x = -x;
+      rest[0] += window_;
+      next = Move(*after.value(), Extended(there, rest), 1, true, state_.set);
+    }
+    if (next != Next::kChanged) {
+      r_.attempt_.leaf.tube.resize(kept);
+      r_.attempt_.leaf.steps.resize(steps);
+      return next;
+    }
+    state_.time = end_;
+    state_.possible = {{after.value()->modes[0], {}}};
+    return next;
+  }
+
+  // The symbol that the time of the event depends on most, if all of the set meets it.
+  std::optional<size_t> Decisive() const { return decisive_; }
+
+ private:
+  // How long until all of the set has met the event, if it does so with a definite rate? Which event?
+  bool Probe(double until) {
+    begin_ = state_.time;
+    // The event may be met later than in the first step: then again, now that it is known.
+    return Probe(until, false) || (guard_ != nullptr && Probe(until, true));
+  }
+
+  bool Probe(double until, bool known) {
+    Flow flow(before_.dynamics, r_.monomials_, r_.OptionsFor(state_.step), r_.stages_.horizon());
+    flow.Start(state_.set, begin_);
+    Map observe(before_.observed, before_.dynamics.states, before_.dynamics.inputs, r_.monomials_);
+    least_rate_ = HUGE_VAL;
+    bool all = false;
+    for (size_t probe = 0; probe < kMostProbes && flow.time() < until; ++probe) {
+      if (r_.stop_.StopRequested() || !flow.Step(until)) return false;
+      for (const Guard& g : before_.guards) {
+        if (&g == guard_ || r_.During(g, flow) == Truth::kFalse) continue;
+        if (guard_ != nullptr || !g.IsComparison()) return false;
+        guard_ = &g;
+      }
+      if (guard_ == nullptr) continue;
+      if (!known && probe > 0) return false;
+      known = true;
+      const Interval rate = flow.stepper().ObservedRate(guard_->first);
+      if (!(rate.hi < 0)) return false;
+      least_rate_ = std::min(least_rate_, -rate.hi);
+      window_ = flow.time() - begin_;
+      if (all) return flow.time() < until;  // one step more than necessary
+      if (!observe.Apply(flow.set())) return false;
+      all = observe.Range(guard_->first).hi < 0;
+    }
+    return false;
+  }
+
+  // Follows a set for a while, during [begin_, end_] of the time that counts. kChanged: done.
+  Next Move(const Stage& stage, FlowSet from, double duration, bool keep, FlowSet& to) {
+    FlowOptions options = r_.flow_;
+    options.first_step = 1e-3 * duration;
+    // That the factor differs between courses widens the linear part, however short the steps are.
+    options.linear_tolerance = HUGE_VAL;
+    Flow flow(stage.dynamics, r_.monomials_, options, duration);
+    flow.Start(std::move(from), 0);
+    if (keep) {
+      r_.falls_.clear();
+      for (const StageClaim& claim : stage.claims) r_.falls_.emplace_back(claim.starts_below.size(), false);
+    }
+    while (flow.time() < duration) {
+      if (r_.stop_.StopRequested()) {
+        r_.Fail(begin_, "stopped");
+        return Next::kFailed;
+      }
+      if (!flow.Step(duration) || r_.TooWide(flow, 0.1)) return Next::kNo;
+      if (!keep) continue;
+      for (const Guard& g : stage.guards) {
+        const bool expected = guard_ != nullptr && g.event == guard_->event;
+        if (!expected && r_.During(g, flow) != Truth::kFalse) return Next::kNo;
+      }
+      r_.attempt_.leaf.steps.emplace_back(flow.stepper().h(), flow.set().degree);
+      r_.Keep(stage, begin_, end_, flow.stepper().during());
+      if (!r_.During(flow, stage, begin_, end_)) {
+        to = flow.set();
+        return Next::kFailed;
+      }
+    }
+    to = Reduced(flow.set());
+    return Next::kChanged;
+  }
+
+  FlowSet Extended(const FlowSet& from, const Polynomial& factor) const {
+    FlowSet set = from;
+    size_t degree = set.degree;
+    while (r_.monomials_->Count(degree) < factor.size()) ++degree;
+    if (degree > set.degree) set.Raise(*r_.monomials_, degree);
+    const size_t n = set.dimension;
+    set.dimension = n + 1;
+    set.polynomials.resize((n + 1) * set.count, 0.0);
+    std::copy(factor.begin(), factor.end(), set.Polynomial(n).begin());
+    set.generators.conservativeResize(static_cast<Eigen::Index>(n + 1), Eigen::NoChange);
+    set.generators.row(static_cast<Eigen::Index>(n)).setZero();
+    set.slack.push_back(0);
+    return set;
+  }
+
+  // Without the factor.
+  FlowSet Reduced(const FlowSet& from) const {
+    FlowSet set = from;
+    if (set.dimension == state_.set.dimension) return set;
+    --set.dimension;
+    set.polynomials.resize(set.dimension * set.count);
+    set.generators.conservativeResize(static_cast<Eigen::Index>(set.dimension), Eigen::NoChange);
+    set.slack.pop_back();
+    return set;
+  }
+
+  // The term of the event and its rate as polynomials of the start, roughly. False if they are not defined.
+  bool Term(const FlowSet& set, Polynomial& value, Polynomial& rate) {
+    const Program& p = before_.dynamics.program;
+    const size_t n = before_.dynamics.states;
+    std::vector<Branch> branches(p.code.size(), Branch::kFirst);
+    std::vector<Interval> held(p.code.size());
+    BoxSeries middle(p, 1);
+    ModelSeries series(p, r_.monomials_, 2);
+    series.Begin(set.degree, 1);
+    for (size_t i = 0; i < n; ++i) {
+      series.SetVariable(i, 0, set.Polynomial(i), 0);
+      middle.SetVariable(i, 0, Interval::Point(set.Polynomial(i)[0]));
+    }
+    for (size_t w = 0; w < before_.dynamics.inputs.size(); ++w) {
+      const double nominal = before_.dynamics.inputs[w].Middle();
+      series.SetVariable(n + w, 0, std::span(&nominal, 1), 0);
+      series.SetVariable(n + w, 1, {}, 0);
+      middle.SetVariable(n + w, 0, Interval::Point(nominal));
+    }
+    if (!middle.Decide(branches, held) || !series.Compute(0, branches, held)) return false;
+    for (size_t i = 0; i < n; ++i) series.SetFromDerivative(i, i, 0);
+    if (!series.Compute(1, branches, held)) return false;
+    const size_t node = p.outputs[n + guard_->first];
+    const auto of = [&](size_t order) {
+      const auto model = series.At(node, order).polynomial;
+      return Polynomial(model.begin(), model.end());
+    };
+    value = of(0);
+    rate = of(1);
+    return true;
+  }
+
+  // Newton's method for polynomials: the time until the term of the event is zero. Any polynomial would be
+  // sound.
+  bool FindTime(const Stage& scaled) {
+    const Monomials& monomials = *r_.monomials_;
+    Polynomial value, rate;
+    if (!Term(state_.set, value, rate)) return false;
+    double most = 0;
+    for (size_t s = 0; s < monomials.symbols(); ++s) {
+      const double slope = std::fabs(value[monomials.Symbol(s)]);
+      if (slope > most) {
+        most = slope;
+        decisive_ = s;
+      }
+    }
+    Polynomial time(state_.set.count, 0.0);
+    time[0] = window_ / 2;
+    double best = HUGE_VAL;
+    for (int round = 0; round < 10; ++round) {
+      FlowSet there;
+      if (Move(scaled, Extended(state_.set, time), 1, false, there) != Next::kChanged ||
+          !Term(there, value, rate))
+        break;
+      const double miss = Magnitude(RangeOf(monomials, value));
+      const bool better = miss < 0.5 * best;
+      if (miss < best) {
+        time_ = time;
+        best = miss;
+      }
+      if (!better && round > 1) break;
+      time.resize(there.count, 0.0);
+      const Polynomial change = Divide(monomials, value, rate, there.degree);
+      double largest = 0;
+      for (size_t i = 0; i < time.size(); ++i) {
+        time[i] -= change[i];
+        largest = std::fmax(largest, std::fabs(change[i]));
+      }
+      if (!std::isfinite(largest) || largest < 1e-14 * window_) break;
+    }
+    if (time_.empty()) return false;
+    const Interval range = RangeOf(monomials, time_);
+    return range.lo > 0 && range.hi < window_;
+  }
+
+  // From the mode before to the mode after, where the set is. kChanged: `there` encloses the starts of the
+  // flow after.
+  Next Switch(const Stage& before, const Stage& after, FlowSet& there) {
+    const size_t n = there.dimension;
+    Map observe(before_.observed, n, before_.dynamics.inputs, r_.monomials_);
+    if (!observe.Apply(there)) return Next::kNo;
+    const double late = Above(Magnitude(observe.Range(guard_->first)) / Below(least_rate_));
+    // A box that no course leaves within twice that time, whatever mode it is in.
+    interval::Box box(n), rates(n), jumps(n);
+    for (size_t i = 0; i < n; ++i) {
+      const double error = there.Error(i);
+      box[i] = RangeOf(*r_.monomials_, there.Polynomial(i)) + Interval{-error, error};
+    }
+    const interval::Box start = box;
+    const Interval time{-2 * late, 2 * late};
+    bool inside = false;
+    for (int attempt = 0; attempt < 20 && !inside; ++attempt) {
+      interval::Box all = box;
+      all.push_back(Interval::Point(1));  // the factor
+      if (!RatesOn(before, all, rates) || !RatesOn(after, all, jumps)) return Next::kNo;
+      inside = true;
+      for (size_t i = 0; i < n; ++i) {
+        const Interval difference = rates[i] - jumps[i];
+        rates[i] = interval::Hull(rates[i], jumps[i]);
+        jumps[i] = difference;
+        const Interval reached = start[i] + time * rates[i];
+        if (!std::isfinite(reached.lo) || !std::isfinite(reached.hi)) return Next::kNo;
+        if (box[i].lo <= reached.lo && reached.hi <= box[i].hi) continue;
+        inside = false;
+        const double more = 0.1 * reached.Width() + 1e-300;
+        box[i] = reached + Interval{-more, more};
+      }
+    }
+    if (!inside) return Next::kNo;
+    // What holds meanwhile.
+    FlowSet around = there;
+    for (size_t i = 0; i < n; ++i) around.slack[i] = Above(around.slack[i] + 2 * late * Magnitude(rates[i]));
+    for (const Stage* stage : {&before, &after}) {
+      const Next held = Holds(*stage, around, stage == &before);
+      if (held != Next::kChanged) return held;
+      r_.Keep(*stage, begin_, end_, box);
+    }
+    // The sum of both times is the window, but for roundings.
+    const double rounded = 0x1p-48 * (begin_ + 2 * window_);
+    for (size_t i = 0; i < n; ++i)
+      there.slack[i] = Above(there.slack[i] + late * Magnitude(jumps[i]) + rounded * Magnitude(rates[i]));
+    return Next::kChanged;
+  }
+
+  // False if some function is not defined on all of the box.
+  static bool RatesOn(const Stage& stage, const interval::Box& box, interval::Box& rates) {
+    const Program& p = stage.dynamics.program;
+    BoxSeries values(p, 1);
+    for (size_t i = 0; i < box.size(); ++i) values.SetVariable(i, 0, box[i]);
+    for (size_t w = 0; w < stage.dynamics.inputs.size(); ++w)
+      values.SetVariable(box.size() + w, 0, stage.dynamics.inputs[w]);
+    std::vector<Branch> branches(p.code.size(), Branch::kEither);
+    std::vector<Interval> held(p.code.size());
+    if (!values.Decide(branches, held)) return false;
+    for (size_t i = 0; i < rates.size(); ++i) rates[i] = values.Of(p.outputs[i], 0);
+    return true;
+  }
+
+  Next Holds(const Stage& stage, const FlowSet& around, bool is_before) {
+    Map observe(stage.observed, stage.dynamics.states, stage.dynamics.inputs, r_.monomials_);
+    const Polynomial one{1};
+    const FlowSet set = Extended(around, one);
+    if (!observe.Apply(set)) return Next::kNo;
+    const auto truth = [&](const Formula& formula, size_t first) {
+      return formula.Check([&](size_t atom) { return observe.Range(first + atom); });
+    };
+    for (const Guard& g : stage.guards) {
+      const bool expected = is_before && g.event == guard_->event;
+      if (!expected && truth(g.formula, g.first) != Truth::kFalse) return Next::kNo;
+    }
+    if (!r_.claims_) return Next::kChanged;
+    for (const StageClaim& claim : stage.claims) {
+      if (claim.instant || claim.from >= end_ || claim.to <= begin_) continue;
+      if (truth(claim.formula, claim.first) == Truth::kTrue) continue;
+      r_.NotEstablished(end_, claim.claim);
+      return Next::kFailed;
+    }
+    return Next::kChanged;
+  }
+
+  Runner& r_;
+  State& state_;
+  const Stage& before_;
+  const Guard* guard_ = nullptr;
+  double begin_ = 0;   ///< of what is looked at, seconds
+  double window_ = 0;  ///< all of the set meets the event within it
+  double end_ = 0;
+  double least_rate_ = 0;
+  Polynomial time_;
+  std::optional<size_t> decisive_;
+};
+
+// `symbol`: which one the time of the event depends on most, if it is known.
+Runner::Next Runner::Cross(State& state, const Stage& stage, double until, std::optional<size_t>& symbol) {
+  if (state.possible.size() != 1) return Next::kNo;
+  Crossing crossing(*this, state, stage);
+  const Next next = crossing.Run(until);
+  symbol = crossing.Decisive();
+  return next;
+}
+
+}  // namespace rondo::reach

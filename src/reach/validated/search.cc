@@ -1,0 +1,189 @@
+#include "reach/validated/search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "expr/substitute.h"
+#include "reach/system/bounds.h"
+#include "reach/validated/runner.h"
+
+namespace rondo::reach {
+
+std::optional<Refuted> Search::Try(std::vector<double> start) {
+  for (size_t i = 0; i < problem_.copy_of.size(); ++i) {
+    if (problem_.copy_of[i]) start[i] = start[*problem_.copy_of[i]];
+  }
+  if (!MayStart(start)) return std::nullopt;
+  Course course;
+  course.start = std::move(start);
+  const double horizon = stages_.horizon();
+  course.input_period = horizon / 16;
+  if (!problem_.inputs.empty()) {
+    const auto mode = random_() % 3;
+    for (int slot = 0; slot < 16; ++slot) {
+      std::vector<double> values;
+      for (size_t i = 0; i < problem_.inputs.size(); ++i) {
+        const Interval b = problem_.inputs[i].bounds;
+        const bool up =
+            mode == 0 && !course.inputs.empty() ? course.inputs.back()[i] == b.hi : random_() % 2 == 0;
+        values.push_back(up ? b.hi : b.lo);
+      }
+      course.inputs.push_back(std::move(values));
+    }
+  }
+  Violation worst = trajectories_.Worst(course, horizon / 400, 0, 1e-10, stop_);
+  if (stop_.StopRequested()) return std::nullopt;
+  if (worst.miss <= 0) {
+    if (worst.miss > -1e299 && (!closest_ || worst.miss > closest_->miss)) closest_ = worst;
+    return std::nullopt;
+  }
+  Refuted refuted{std::move(course), std::move(worst), false};
+  refuted.certain = Confirm(refuted);
+  if (!refuted.certain && !Repeats(refuted)) return std::nullopt;
+  return refuted;
+}
+
+// Is the start one that is assumed? For sure: exactly, or by enclosures.
+bool Search::MayStart(const std::vector<double>& start) {
+  expr::Arena& arena = *problem_.arena;
+  expr::Substitution values;
+  for (size_t i = 0; i < start.size(); ++i) {
+    const bool pinned = i < problem_.pinned.size() && problem_.pinned[i].has_value();
+    values.emplace(problem_.states[i],
+                   arena.Number(arena.Real(), pinned ? *problem_.pinned[i] : Rational::FromDouble(start[i])));
+  }
+  const TermId exact = expr::Substitute(arena, problem_.assume, values);
+  if (exact == arena.True()) return true;
+  if (exact == arena.False()) return false;
+  return CheckBox(stages_.assumed_terms(), stages_.assumed(), StartBox(start)) == Truth::kTrue;
+}
+
+interval::Box Search::StartBox(const std::vector<double>& start) const {
+  interval::Box box;
+  for (size_t i = 0; i < start.size(); ++i) {
+    const bool pinned = i < problem_.pinned.size() && problem_.pinned[i].has_value();
+    box.push_back(pinned ? Enclose(*problem_.pinned[i]) : Interval::Point(start[i]));
+  }
+  return box;
+}
+
+// A violation that could not be enclosed counts if it does not depend on how finely it was computed.
+bool Search::Repeats(const Refuted& refuted) {
+  const double horizon = stages_.horizon();
+  const Violation fine = trajectories_.Worst(refuted.course, horizon / 20000, 0, 1e-13, stop_);
+  if (stop_.StopRequested() || fine.miss <= 0) return false;
+  // Both stop at the first instant that they look at and see a violation: go on to the same one.
+  double apart = 0;
+  double miss = -1e300;
+  std::vector<double> there;
+  trajectories_.Run(
+      refuted.course, horizon / 400,
+      [&](double t, std::span<const double> x) {
+        if (t < refuted.violation.time - 1e-12) return true;
+        there.assign(x.begin(), x.end());
+        return false;
+      },
+      1e-13);
+  if (there.size() != refuted.violation.state.size()) return false;
+  double size = 1;
+  for (size_t i = 0; i < there.size(); ++i) {
+    apart = std::fmax(apart, std::fabs(there[i] - refuted.violation.state[i]));
+    size = std::fmax(size, std::fabs(there[i]));
+  }
+  miss = trajectories_.Miss(refuted.violation.claim, there);
+  return miss > 1e-7 * size && miss > 100 * apart;
+}
+
+std::optional<Refuted> Search::Run() {
+  const interval::Box& box = problem_.initial;
+  const size_t n = box.size();
+  size_t free = 0;
+  for (const Interval& side : box) free += side.IsPoint() ? 0 : 1;
+  for (size_t s = 0; s < options_.samples && !stop_.StopRequested(); ++s) {
+    std::vector<double> start(n);
+    const bool corner = s < options_.samples / 2 && (free >= 16 || s < size_t{1} << free);
+    size_t bit = 0;
+    for (size_t i = 0; i < n; ++i) {
+      if (box[i].IsPoint()) {
+        start[i] = box[i].lo;
+      } else if (corner) {
+        const bool up = free < 16 ? (s >> bit) % 2 == 1 : random_() % 2 == 1;
+        start[i] = up ? box[i].hi : box[i].lo;
+        ++bit;
+      } else {
+        const double u = static_cast<double>(random_() >> 11) * 0x1p-53;
+        start[i] = std::min(box[i].hi, box[i].lo + u * (box[i].hi - box[i].lo));
+      }
+    }
+    // Bounds are rounded outwards: a corner may be just outside.
+    if (corner && !MayStart(start)) {
+      for (size_t i = 0; i < n; ++i) {
+        const double inset = 1e-9 * box[i].Width();
+        start[i] = std::clamp(start[i], box[i].lo + inset, box[i].hi - inset);
+      }
+    }
+    if (auto refuted = Try(std::move(start))) return refuted;
+  }
+  return std::nullopt;
+}
+
+// Does the exact solution from this start break the claim at this time? Then the tube of the point says so.
+bool Search::Confirm(const Refuted& refuted) {
+  if (!problem_.events.empty()) return ConfirmWithEvents(refuted);
+  const auto made = stages_.For({stages_.modes().start()});
+  const Stage& stage = *made.value();
+  const interval::Box point = StartBox(refuted.course.start);
+  Dynamics dynamics = stage.dynamics;
+  auto monomials = std::make_shared<Monomials>(0);
+  FlowOptions options = options_.flow;
+  Flow flow(dynamics, monomials, options, stages_.horizon());
+  flow.Start(FromBox(point, *monomials, std::vector<int>(point.size(), -1)), 0);
+  const auto hold = [&](double t) {
+    if (refuted.course.inputs.empty()) {
+      for (Interval& i : dynamics.inputs) i = Interval::Point(i.Middle());
+      return;
+    }
+    const auto slot = std::min(refuted.course.inputs.size() - 1,
+                               static_cast<size_t>(std::floor(t / refuted.course.input_period + 1e-9)));
+    for (size_t i = 0; i < dynamics.inputs.size(); ++i)
+      dynamics.inputs[i] = Interval::Point(refuted.course.inputs[slot][i]);
+  };
+  const double end = refuted.violation.time;
+  size_t sample = 0;
+  while (true) {
+    hold(flow.time());
+    if (sample < stages_.samples() && flow.time() >= stages_.period() * static_cast<double>(sample) &&
+        (flow.time() < end || end == 0)) {
+      Map control(stage.updates, dynamics.states, dynamics.inputs, monomials);
+      FlowSet next;
+      if (!control.Apply(flow.set())) return false;
+      control.Finish(flow.set(), next, 400);
+      flow.set() = std::move(next);
+      ++sample;
+    }
+    if (flow.time() >= end) break;
+    double until = end;
+    if (sample < stages_.samples()) until = std::min(until, stages_.period() * static_cast<double>(sample));
+    if (!dynamics.inputs.empty()) {
+      const double slot = std::floor(flow.time() / refuted.course.input_period + 1e-9) + 1;
+      until = std::min(until, slot * refuted.course.input_period);
+    }
+    while (flow.time() < until) {
+      if (stop_.StopRequested() || !flow.Step(until)) return false;
+    }
+  }
+  Map observe(stage.observed, dynamics.states, dynamics.inputs, monomials);
+  if (!observe.Apply(flow.set())) return false;
+  const StageClaim& claim = stage.claims[refuted.violation.claim];
+  return claim.formula.Check([&](size_t atom) { return observe.Range(claim.first + atom); }) == Truth::kFalse;
+}
+
+// The same where events happen, for what no input drives.
+bool Search::ConfirmWithEvents(const Refuted& refuted) {
+  if (!problem_.inputs.empty() || refuted.violation.time <= 0) return false;
+  const interval::Box point = StartBox(refuted.course.start);
+  Runner runner(stages_, options_, options_.flow, point, problem_.initial, stop_);
+  return runner.Breaks(refuted.violation.claim, refuted.violation.time);
+}
+
+}  // namespace rondo::reach

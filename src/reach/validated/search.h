@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "reach/system/numeric.h"
+#include "reach/validated/prover.h"
+#include "reach/validated/stage.h"
+
+namespace rondo::reach {
+
+/// Looks for a trajectory that breaks a claim: corners, middles of faces, points at random.
+class Search {
+ public:
+  Search(Stages& stages, const ProverOptions& options, Trajectories& trajectories,
+         const base::StopToken& stop)
+      : problem_(stages.problem()),
+        stages_(stages),
+        options_(options),
+        trajectories_(trajectories),
+        stop_(stop),
+        random_(options.seed) {}
+
+  /// Of all starts.
+  std::optional<Refuted> Run();
+  /// From here, if it is a start.
+  std::optional<Refuted> Try(std::vector<double> start);
+
+  /// How near any trajectory came that broke nothing.
+  const std::optional<Violation>& closest() const { return closest_; }
+
+ private:
+  bool MayStart(const std::vector<double>& start);
+  interval::Box StartBox(const std::vector<double>& start) const;
+  bool Confirm(const Refuted& refuted);
+  bool ConfirmWithEvents(const Refuted& refuted);
+  bool Repeats(const Refuted& refuted);
+
+  const Problem& problem_;
+  Stages& stages_;
+  const ProverOptions& options_;
+  Trajectories& trajectories_;
+  const base::StopToken& stop_;
+  std::mt19937_64 random_;
+  std::optional<Violation> closest_;
+};
+
+}  // namespace rondo::reach
