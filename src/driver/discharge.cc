@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "reach/system/centred.h"
 #include "reach/system/text.h"
 
 namespace rondo::driver {
@@ -11,7 +12,9 @@ namespace rondo::driver {
 namespace {
 
 // The version changes with what a proof means.
-std::string Question(const ContractResult& r) { return "rondo reach 2\n" + reach::ToText(r.made.problem); }
+std::string Question(const ContractResult& r) {
+  return "rondo reach 3\n" + reach::ToText(reach::Centred(r.made.problem).problem);
+}
 
 }  // namespace
 

@@ -1,16 +1,23 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "driver/course_file.h"
 #include "driver/discharge.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
 #include "driver/reachability.h"
+#include "driver/run_file.h"
 #include "driver/statistical.h"
+#include "driver/sweep.h"
 #include "driver/terminal.h"
+#include "driver/tube_reuse.h"
 #include "driver/verbs.h"
+#include "reach/draw/tube.h"
 
 namespace rondo::driver {
 namespace {
@@ -24,6 +31,9 @@ struct Options {
   uint64_t seed = 1;
   bool statistical = false;
   StatisticalOptions sampling;
+  std::vector<std::string> sweep;  ///< the parameter, its range
+  size_t parts = 64;
+  std::string svg, save;
   bool no_cache = false;
   bool json = false;
 };
@@ -33,13 +43,14 @@ class Run {
   explicit Run(const Options& options) : options_(options) {}
 
   int operator()() {
+    if (!ReadSweep()) return kRejected;
     if (!Load()) return Finish(kRejected);
     if (!options_.contract.empty()) {
-      std::erase_if(results_, [&](const ContractResult& r) {
+      std::erase_if(loaded_.results, [&](const ContractResult& r) {
         return r.made.problem.name.find(options_.contract) == std::string::npos;
       });
     }
-    if (results_.empty()) {
+    if (loaded_.results.empty()) {
       session_.diagnostics
           .Report(diag::Kind::kReachUnknown, {},
                   options_.contract.empty() ? "there is no contract to look at"
@@ -51,46 +62,139 @@ class Run {
       return Finish(kRejected);
     }
     if (options_.statistical) return SampleAll();
+    if (loose_) return SweepAll();
     {
       ProgressLine line;
       const InterruptScope interrupt(stop_);
-      for (size_t i = 0; i < results_.size(); ++i) Decide(i, line);
+      for (size_t i = 0; i < loaded_.results.size(); ++i) Decide(i, line);
     }
     int status = kEstablished;
-    for (const ContractResult& r : results_) {
+    for (const ContractResult& r : loaded_.results) {
       ReportContract(r, session_.diagnostics);
       const int own = StatusOf(r);
       if (own == kRejected || (own == kUndecided && status == kEstablished)) status = own;
     }
-    return Finish(status);
+    status = Finish(status);
+    for (const auto& [path, svg] : pictures_) {
+      if (WritePicture(path, svg, options_.json) != kEstablished) status = kRejected;
+    }
+    return status;
   }
 
  private:
   bool Load() {
-    if (options_.files.size() == 1 && !IsMotionFile(options_.files[0])) {
-      koord_ = LoadKoord({options_.files[0], options_.spec}, session_);
-      if (koord_ == nullptr) return false;
-      results_ = PortContractsOf(*koord_, platforms_, session_);
-    } else {
-      motion_ = LoadMotion(options_.files, {}, session_);
-      if (motion_ == nullptr || motion_->declarations == nullptr || session_.diagnostics.has_errors())
-        return false;
-      results_ = ContractsOf(*motion_);
+    const bool good =
+        LoadContracts(options_.files, options_.spec, loose_ ? &*loose_ : nullptr, session_, loaded_);
+    if (!good && !session_.diagnostics.has_errors()) PrintFailure("nothing was read");
+    return good;
+  }
+
+  // NAME FROM..TO
+  bool ReadSweep() {
+    if (options_.sweep.empty()) return true;
+    const std::string& range = options_.sweep[1];
+    const size_t dots = range.find("..");
+    const auto from = dots == std::string::npos ? std::nullopt : expr::Rational::Parse(range.substr(0, dots));
+    const auto to = dots == std::string::npos ? std::nullopt : expr::Rational::Parse(range.substr(dots + 2));
+    if (!from || !to || !(*from < *to)) {
+      PrintFailure(
+          fmt::format("`--sweep` takes a name and a range, as in `--sweep gain 0.5..4`: not `{}`", range));
+      return false;
     }
-    return !session_.diagnostics.has_errors();
+    loose_ = robot::Loose{options_.sweep[0], *from, *to};
+    return true;
+  }
+
+  int SweepAll() {
+    int status = kEstablished;
+    size_t with = 0;
+    nlohmann::json list = nlohmann::json::array();
+    std::string text;
+    {
+      ProgressLine line;
+      const InterruptScope interrupt(stop_);
+      for (ContractResult& r : loaded_.results) {
+        const auto it = std::ranges::find(r.made.names, loose_->name);
+        if (it == r.made.names.end()) continue;
+        ++with;
+        // What is known of it is known for less: a part of its own range.
+        interval::Interval& side = r.made.problem.initial[static_cast<size_t>(it - r.made.names.begin())];
+        side = interval::Meet(side, {loose_->least.ToDouble(), loose_->most.ToDouble()});
+        DecideOptions options{options_.timeout, options_.jobs, options_.seed, {}};
+        options.progress = [&](size_t parts, size_t) {
+          line.Show(fmt::format("{}: {} parts of the range", r.made.problem.name, parts));
+        };
+        if (side.IsEmpty()) r.impossible = fmt::format("`{}` is never in this range", loose_->name);
+        const Sweep sweep = SweepContract(r, loose_->name, options_.parts, options, stop_);
+        const int own = StatusOf(sweep);
+        if (own == kRejected || (own == kUndecided && status == kEstablished)) status = own;
+        list.push_back(ToJson(sweep));
+        text += ToText(sweep);
+      }
+    }
+    if (with == 0) {
+      PrintFailure(
+          fmt::format("no contract depends on `{}`: name a parameter of a robot, or of a motion, or a "
+                      "state",
+                      loose_->name));
+      return kRejected;
+    }
+    if (options_.json) {
+      PrintJson({{"command", "reach"}, {"status", status}, {"sweeps", list}});
+    } else {
+      Print(text);
+      if (status != kEstablished) Print(fmt::format("exit {}\n", status));
+    }
+    return status;
+  }
+
+  // Refutations as files that replay, and pictures.
+  void Keep(size_t index) {
+    ContractResult& r = loaded_.results[index];
+    if (!r.outcome) return;
+    if (const auto* refuted = std::get_if<reach::Refuted>(&*r.outcome)) {
+      const std::string path = options_.save.empty() ? DefaultRunFile(options_.files[0], r.made.problem.name)
+                                                     : Numbered(options_.save, index);
+      const CourseFile file{options_.files,      options_.spec,
+                            r.made.problem.name, r.made.problem.claims[refuted->violation.claim].name,
+                            refuted->course,     refuted->violation.time};
+      const auto written = SaveCourse(path, file);
+      if (written.ok()) {
+        saved_.push_back(path);
+      } else {
+        PrintFailure(fmt::format("cannot write `{}`: {}", path, written.error().message));
+      }
+    }
+    if (options_.svg.empty()) return;
+    reach::TubePicture picture{r.made.names};
+    picture.seed = options_.seed;
+    const auto svg = reach::DrawTube(r.made.problem, *r.outcome, picture, stop_);
+    if (svg.ok()) pictures_.emplace_back(Numbered(options_.svg, index), svg.value());
+  }
+
+  // `tube.svg`, or `tube-2.svg` if there are several contracts.
+  std::string Numbered(const std::string& path, size_t index) const {
+    if (loaded_.results.size() < 2) return path;
+    const std::filesystem::path p(path);
+    return (p.parent_path() / fmt::format("{}-{}{}", p.stem().string(), index + 1, p.extension().string()))
+        .string();
   }
 
   void Decide(size_t index, ProgressLine& line) {
-    ContractResult& r = results_[index];
+    ContractResult& r = loaded_.results[index];
     const std::string& name = r.made.problem.name;
     DecideOptions options{options_.timeout, options_.jobs, options_.seed, {}};
     options.progress = [&](size_t done, size_t open) {
-      line.Show(
-          fmt::format("[{}/{}] {}: {} parts proved, {} open", index + 1, results_.size(), name, done, open));
+      line.Show(fmt::format("[{}/{}] {}: {} parts proved, {} open", index + 1, loaded_.results.size(), name,
+                            done, open));
     };
-    line.Show(fmt::format("[{}/{}] {}", index + 1, results_.size(), name));
-    DecideContract(r, options, stop_);
+    line.Show(fmt::format("[{}/{}] {}", index + 1, loaded_.results.size(), name));
+    // The same motion elsewhere, or of another robot of the same type, is proved already.
+    r.same_as = reuse_.Covers(r);
+    if (r.same_as.empty()) DecideContract(r, options, stop_);
     StoreProved(r, cache_);
+    reuse_.Remember(r);
+    Keep(index);
   }
 
   // Samples establish nothing: a failure refutes, anything else stays open.
@@ -101,7 +205,7 @@ class Run {
     int status = kUndecided;
     nlohmann::json list = nlohmann::json::array();
     const InterruptScope interrupt(stop_);
-    for (const ContractResult& r : results_) {
+    for (const ContractResult& r : loaded_.results) {
       const Statistical s = Sample(r, sampling, stop_);
       if (s.failures + s.corner_failures > 0) status = kRejected;
       if (options_.json) {
@@ -122,22 +226,23 @@ class Run {
   int Finish(int status) {
     if (options_.json) {
       nlohmann::json list = nlohmann::json::array();
-      for (const ContractResult& r : results_) list.push_back(ToJson(r));
+      for (const ContractResult& r : loaded_.results) list.push_back(ToJson(r));
       PrintJson({{"command", "reach"},
                  {"status", status},
                  {"contracts", list},
+                 {"runs", saved_},
                  {"diagnostics", DiagnosticsToJson(session_.sources, session_.diagnostics)}});
       return status;
     }
-    if (!results_.empty()) Print(ContractTable(results_));
+    if (!loaded_.results.empty()) Print(ContractTable(loaded_.results));
     if (!session_.diagnostics.all().empty()) {
-      if (!results_.empty()) Print("\n");
+      if (!loaded_.results.empty()) Print("\n");
       PrintDiagnostics(session_.sources, session_.diagnostics);
     }
-    if (!results_.empty()) {
+    if (!loaded_.results.empty()) {
       size_t proved = 0;
       std::set<std::string> assumed;
-      for (const ContractResult& r : results_) {
+      for (const ContractResult& r : loaded_.results) {
         if (VerdictOf(r) != "proved") continue;
         ++proved;
         if (!r.model.empty())
@@ -146,22 +251,25 @@ class Run {
         assumed.insert(r.made.assumed.begin(), r.made.assumed.end());
       }
       if (!assumed.empty()) Print(fmt::format("assumed: {}\n", fmt::join(assumed, "; ")));
-      Print(fmt::format("{} of {} contract{} proved\n", proved, results_.size(),
-                        results_.size() == 1 ? "" : "s"));
+      Print(fmt::format("{} of {} contract{} proved\n", proved, loaded_.results.size(),
+                        loaded_.results.size() == 1 ? "" : "s"));
     }
+    for (const std::string& path : saved_)
+      Print(fmt::format("the run is in {}: `rondo replay {}`\n", path, path));
     if (status != kEstablished) Print(fmt::format("exit {}\n", status));
     return status;
   }
 
   const Options& options_;
   Session session_;
-  std::unique_ptr<LoadedKoord> koord_;
-  std::unique_ptr<Motion> motion_;
-  Platforms platforms_;
   const solve::cache::ProofCache cache_{options_.no_cache ? std::filesystem::path()
                                                           : solve::cache::ProofCache::DefaultFolder()};
   base::StopToken stop_;
-  std::vector<ContractResult> results_;
+  LoadedContracts loaded_;
+  std::optional<robot::Loose> loose_;
+  TubeReuse reuse_;
+  std::vector<std::string> saved_;
+  std::vector<std::pair<std::string, std::string>> pictures_;
 };
 
 }  // namespace
@@ -177,6 +285,17 @@ void AddReachVerb(CLI::App& app, int& status) {
       ->check(CLI::Range(0.001, 1e6));
   verb->add_option("--jobs", options->jobs, "threads; default: as many as there are cores");
   verb->add_option("--seed", options->seed, "of the trajectories that look for a violation; default: 1");
+  verb->add_option("--sweep", options->sweep,
+                   "a parameter and its range, in SI units: for which of its values do contracts hold?")
+      ->expected(2)
+      ->allow_extra_args(false)
+      ->type_name("NAME FROM..TO");
+  verb->add_option("--parts", options->parts,
+                   "of --sweep: how finely the range is divided, at most; default: 64")
+      ->check(CLI::Range(size_t{1}, size_t{65536}));
+  verb->add_option("--svg", options->svg, "write a picture: tubes, samples, starts and bounds");
+  verb->add_option("--save", options->save,
+                   "where trajectories that break a contract go, for `rondo replay`");
   verb->add_flag("--statistical", options->statistical,
                  "draw starts at random instead of proving: how many fail at most, with which confidence");
   verb->add_option("--runs", options->sampling.runs, "of --statistical; default: 6905 (for 0.001 with 0.999)")
@@ -189,7 +308,8 @@ void AddReachVerb(CLI::App& app, int& status) {
   verb->add_flag("--no-cache", options->no_cache, "do not remember for `rondo prove` what is proved");
   verb->add_flag("--json", options->json, "the result as JSON on standard output");
   verb->footer(
-      "example: rondo reach examples/reach/laub_loomis.rondo\n\n"
+      "examples:\n  rondo reach examples/reach/laub_loomis.rondo --contract Wide --svg tube.svg\n"
+      "  rondo reach models/quadrotor.rondo --contract CrossField --sweep velocity_gain 1.2..2\n\n"
       "For every state in which a motion may begin, every parameter and every input: does the robot keep the "
       "motion's "
       "contract\nunder its dynamics and controller (docs/reach.md)?\n"

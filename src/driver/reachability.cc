@@ -30,7 +30,7 @@ const reach::Problem& ProblemOf(const ContractResult& r) { return r.made.problem
 
 }  // namespace
 
-std::vector<ContractResult> ContractsOf(Motion& motion) {
+std::vector<ContractResult> ContractsOf(Motion& motion, const robot::Loose* loose) {
   std::vector<ContractResult> all;
   const choreo::Graph* of = nullptr;
   const auto add = [&](const robot::World& world, const robot::Body& body,
@@ -67,7 +67,8 @@ std::vector<ContractResult> ContractsOf(Motion& motion) {
     const auto* type = std::get_if<robot::RobotDef>(&item);
     if (type == nullptr) continue;
     auto world = std::make_shared<robot::World>();
-    for (const robot::MotionInstance& i : robot::MotionsOf(*type, motion.declarations->evaluator(), *world))
+    for (const robot::MotionInstance& i :
+         robot::MotionsOf(*type, motion.declarations->evaluator(), *world, loose))
       add(*world, world->bodies[0], i);
   }
   return all;
@@ -79,6 +80,12 @@ std::vector<ContractResult> PortContractsOf(const LoadedKoord& koord, Platforms&
   for (const koord::PlatformDef* platform : koord.model.platforms) {
     const std::filesystem::path beside = session.sources.path(platform->span.file);
     const std::string file = (beside.parent_path() / platform->file).lexically_normal().string();
+    if (std::error_code error; !std::filesystem::is_regular_file(file, error)) {
+      session.diagnostics
+          .Report(Kind::kChoreoImport, platform->file_span, fmt::format("there is no file `{}`", file))
+          .Help("paths are relative to the specification");
+      continue;
+    }
     auto motion = LoadMotion({file}, {}, session);
     if (motion == nullptr || motion->declarations == nullptr) continue;
     const robot::RobotDef* type = nullptr;
@@ -116,6 +123,22 @@ std::vector<ContractResult> PortContractsOf(const LoadedKoord& koord, Platforms&
   return all;
 }
 
+bool LoadContracts(const std::vector<std::string>& files, const std::string& spec, const robot::Loose* loose,
+                   Session& session, LoadedContracts& loaded) {
+  if (files.size() == 1 && !IsMotionFile(files[0])) {
+    loaded.koord = LoadKoord({files[0], spec}, session);
+    if (loaded.koord == nullptr) return false;
+    loaded.results = PortContractsOf(*loaded.koord, loaded.platforms, session);
+  } else {
+    loaded.motion = LoadMotion(files, {}, session);
+    if (loaded.motion == nullptr || loaded.motion->declarations == nullptr ||
+        session.diagnostics.has_errors())
+      return false;
+    loaded.results = ContractsOf(*loaded.motion, loose);
+  }
+  return !session.diagnostics.has_errors();
+}
+
 void DecideContract(ContractResult& r, const DecideOptions& options, const base::StopToken& stop) {
   if (!r.impossible.empty() || stop.cancelled()) return;
   reach::ProverOptions prover;
@@ -136,6 +159,7 @@ void DecideContract(ContractResult& r, const DecideOptions& options, const base:
 
 std::string_view VerdictOf(const ContractResult& r) {
   if (!r.impossible.empty()) return "unknown";
+  if (!r.same_as.empty()) return "proved";
   if (!r.outcome) return "not begun";
   if (std::holds_alternative<reach::Proved>(*r.outcome)) return "proved";
   if (std::holds_alternative<reach::Refuted>(*r.outcome)) return "refuted";
@@ -191,8 +215,9 @@ std::string ContractTable(const std::vector<ContractResult>& results) {
       if (const auto* proved = std::get_if<reach::Proved>(&*r.outcome))
         parts = fmt::format("{}", proved->leaves.size());
     }
-    text += fmt::format("{:<9} {:>9} {:>6}  {}\n", VerdictOf(r), fmt::format("{:.3f} s", r.seconds), parts,
-                        ProblemOf(r).name);
+    const std::string note = r.same_as.empty() ? "" : fmt::format(" (as {})", r.same_as);
+    text += fmt::format("{:<9} {:>9} {:>6}  {}{}\n", VerdictOf(r), fmt::format("{:.3f} s", r.seconds), parts,
+                        ProblemOf(r).name, note);
   }
   return text;
 }
@@ -203,6 +228,7 @@ nlohmann::json ToJson(const ContractResult& r) {
   if (!r.made.assumed.empty()) out["assumed"] = r.made.assumed;
   if (!r.domain.empty()) out["domain"] = r.domain;
   if (!r.model.empty()) out["model"] = r.model;
+  if (!r.same_as.empty()) out["same_as"] = r.same_as;
   if (!r.outcome) return out;
   if (const auto* proved = std::get_if<reach::Proved>(&*r.outcome)) {
     out["parts"] = proved->leaves.size();

@@ -23,11 +23,13 @@ struct ContractResult {
   const choreo::Graph* graph = nullptr;  ///< of a choreography's motion
   std::string motion;                    ///< `Type.Motion`
   std::string model;                     ///< of a port: by which robot type
+  std::string same_as;                   ///< the contract whose tube shows this one, too
 };
 
 /// The contracts of the motions that choreographies use; without any, of all robot types, as far as they have
 /// controllers or dynamics and their parameters have values or ranges.
-std::vector<ContractResult> ContractsOf(Motion& motion);
+/// `loose`: a parameter of robot types that may have any value between two bounds.
+std::vector<ContractResult> ContractsOf(Motion& motion, const robot::Loose* loose = nullptr);
 
 /// The models that the platforms of a Koord program name, read from their files.
 struct Platforms {
@@ -37,6 +39,18 @@ struct Platforms {
 
 /// The controller assumptions of the program whose modules have a platform.
 std::vector<ContractResult> PortContractsOf(const LoadedKoord& koord, Platforms& platforms, Session& session);
+
+/// Files with contracts, and what they are about.
+struct LoadedContracts {
+  std::unique_ptr<LoadedKoord> koord;
+  std::unique_ptr<Motion> motion;
+  Platforms platforms;
+  std::vector<ContractResult> results;
+};
+
+/// The contracts of robots and choreographies (`.rondo`), or of one Koord program. False after an error.
+bool LoadContracts(const std::vector<std::string>& files, const std::string& spec, const robot::Loose* loose,
+                   Session& session, LoadedContracts& loaded);
 
 /// Decides one contract, within so many seconds.
 struct DecideOptions {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "driver/course_file.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
 #include "driver/koord_load.h"
@@ -183,6 +184,15 @@ int Run(const Options& options) {
   }
   if (bytes.value().starts_with("\x89MCAP"))
     return Tell(options, ReplayTrace(bytes.value(), session), session);
+  if (IsCourse(bytes.value())) {
+    const auto course = ReadCourse(bytes.value());
+    if (!course.ok()) {
+      PrintFailure(fmt::format("`{}`: {}", options.file, course.error().message));
+      return kRejected;
+    }
+    const auto told = ReplayCourse(course.value(), session);
+    return Tell(options, {told.ok(), told.ok() ? told.value() : told.error().message}, session);
+  }
   const auto run = LoadRun(options.file);
   if (!run.ok()) {
     PrintFailure(fmt::format("`{}`: {}", options.file, run.error().message));
@@ -196,7 +206,8 @@ int Run(const Options& options) {
 void AddReplayVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("replay", "run a trace or counterexample again, and compare");
-  verb->add_option("FILE", options->file, "a trace of `rondo simulate`, or a run that `rondo explore` saved")
+  verb->add_option("FILE", options->file,
+                   "a trace of `rondo simulate`, or a run that `rondo explore` or `rondo reach` saved")
       ->required();
   verb->add_flag("--json", options->json, "the result as JSON on standard output");
   verb->footer(

@@ -5,7 +5,9 @@ namespace {
 
 class Rebuilder {
  public:
-  Rebuilder(Arena& arena, const std::function<TermId(TermId)>& change) : arena_(arena), change_(change) {}
+  // `replaced`: what original subterms become, without a look inside. `change`: what rebuilt ones do.
+  Rebuilder(Arena& arena, const Substitution& replaced, const std::function<TermId(TermId)>& change)
+      : arena_(arena), change_(change), done_(replaced) {}
 
   TermId operator()(TermId root) {
     std::vector<TermId> stack{root};
@@ -32,7 +34,7 @@ class Rebuilder {
         same = same && args.back() == arg;
       }
       const TermId rebuilt = same ? t : arena_.Rebuild(shape, std::move(args));
-      done_.emplace(t, change_(rebuilt));
+      done_.emplace(t, change_ ? change_(rebuilt) : rebuilt);
     }
     return done_.at(root);
   }
@@ -46,15 +48,11 @@ class Rebuilder {
 }  // namespace
 
 TermId Transform(Arena& arena, TermId term, const std::function<TermId(TermId)>& change) {
-  return Rebuilder(arena, change)(term);
+  return Rebuilder(arena, {}, change)(term);
 }
 
 TermId Substitute(Arena& arena, TermId term, const Substitution& map) {
-  const std::function<TermId(TermId)> change = [&](TermId t) {
-    const auto it = map.find(t);
-    return it == map.end() ? t : it->second;
-  };
-  return Rebuilder(arena, change)(term);
+  return Rebuilder(arena, map, nullptr)(term);
 }
 
 void VisitPostorder(const Arena& arena, TermId term, std::unordered_set<TermId>& seen,

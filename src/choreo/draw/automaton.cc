@@ -4,11 +4,13 @@
 
 #include <algorithm>
 
-#include "choreo/draw/svg.h"
+#include "draw/svg.h"
 #include "lang/expr_printer.h"
 
 namespace rondo::choreo {
 namespace {
+
+using draw::Svg;
 
 constexpr double kMargin = 20;
 constexpr double kWidth = 44;

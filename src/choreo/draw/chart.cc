@@ -8,11 +8,13 @@
 #include <map>
 #include <set>
 
-#include "choreo/draw/svg.h"
+#include "draw/svg.h"
 #include "lang/expr_printer.h"
 
 namespace rondo::choreo {
 namespace {
+
+using draw::Svg;
 
 constexpr double kMargin = 16;
 constexpr double kLeastLane = 120;

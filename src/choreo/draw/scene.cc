@@ -7,11 +7,13 @@
 #include <limits>
 #include <numbers>
 
-#include "choreo/draw/svg.h"
+#include "draw/svg.h"
 #include "robot/separation/numeric_set.h"
 
 namespace rondo::choreo {
 namespace {
+
+using draw::Svg;
 
 constexpr double kSide = 420, kMargin = 48, kTitle = 44;
 constexpr int kDirectionCount = 72;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -54,33 +56,80 @@ class Writer {
 
  private:
   void Name(TermId t, std::string name) {
-    names_[t] = std::move(name);
-    seen_.insert(t);
+    names_[t] = name;
+    shapes_[t] = std::move(name);
+  }
+
+  // What the term is, without its arguments.
+  std::string Head(TermId t) const {
+    switch (arena_.op(t)) {
+      case expr::Op::kBool:
+        return t == arena_.True() ? "true" : "false";
+      case expr::Op::kNumber:
+        return arena_.number(t).Numerator() + "/" + arena_.number(t).Denominator();
+      case expr::Op::kVariable:
+        return "variable " + arena_.symbol(arena_.symbol_of(t)).name;
+      case expr::Op::kElementary:
+        return std::string(expr::Name(arena_.elementary_of(t)));
+      case expr::Op::kApply:
+        return fmt::format("{} {}", expr::Name(arena_.op(t)), arena_.term(t).payload);
+      default:
+        return std::string(expr::Name(arena_.op(t)));
+    }
+  }
+
+  bool Commutes(TermId t) const {
+    switch (arena_.op(t)) {
+      case expr::Op::kAnd:
+      case expr::Op::kOr:
+      case expr::Op::kAdd:
+      case expr::Op::kMul:
+      case expr::Op::kEq:
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  // The arguments in an order that depends on what they are, not on when they were made.
+  std::vector<TermId> Arguments(TermId t) const {
+    std::vector<TermId> args(arena_.args(t).begin(), arena_.args(t).end());
+    if (Commutes(t)) {
+      std::ranges::stable_sort(args, {}, [&](TermId a) { return shapes_.at(a); });
+    }
+    return args;
+  }
+
+  // A digest of each subterm.
+  void Shape(TermId term) {
+    std::unordered_set<TermId> seen;
+    expr::VisitPostorder(arena_, term, seen, [&](TermId t) {
+      if (shapes_.contains(t)) return;
+      std::string text = Head(t);
+      for (const TermId a : Arguments(t)) text += " " + shapes_.at(a);
+      shapes_[t] =
+          text.size() <= 32 ? "(" + text + ")" : fmt::format("#{:016x}", std::hash<std::string>()(text));
+    });
   }
 
   std::string Term(TermId term) {
-    expr::VisitPostorder(arena_, term, seen_, [&](TermId t) {
-      if (names_.contains(t)) return;
-      std::string line;
-      switch (arena_.op(t)) {
-        case expr::Op::kBool:
-          line = t == arena_.True() ? "true" : "false";
-          break;
-        case expr::Op::kNumber:
-          line = arena_.number(t).Numerator() + "/" + arena_.number(t).Denominator();
-          break;
-        case expr::Op::kVariable:
-          line = "variable " + arena_.symbol(arena_.symbol_of(t)).name;
-          break;
-        default:
-          line = std::string(expr::Name(arena_.op(t)));
-          if (arena_.op(t) == expr::Op::kElementary) line = std::string(expr::Name(arena_.elementary_of(t)));
-          if (arena_.op(t) == expr::Op::kApply) line += fmt::format(" {}", arena_.term(t).payload);
-          for (const TermId a : arena_.args(t)) line += " " + names_.at(a);
+    Shape(term);
+    std::vector<std::pair<TermId, bool>> stack{{term, false}};
+    while (!stack.empty()) {
+      const auto [t, expanded] = stack.back();
+      stack.pop_back();
+      if (names_.contains(t)) continue;
+      const std::vector<TermId> args = Arguments(t);
+      if (!expanded) {
+        stack.emplace_back(t, true);
+        for (size_t i = args.size(); i-- > 0;) stack.emplace_back(args[i], false);
+        continue;
       }
+      std::string line = Head(t);
+      for (const TermId a : args) line += " " + names_.at(a);
       names_[t] = fmt::format("t{}", next_++);
       text_ += fmt::format("{} {}\n", names_[t], line);
-    });
+    }
     return names_.at(term);
   }
 
@@ -88,7 +137,7 @@ class Writer {
   const expr::Arena& arena_;
   std::string text_;
   std::unordered_map<TermId, std::string> names_;
-  std::unordered_set<TermId> seen_;
+  std::unordered_map<TermId, std::string> shapes_;
   size_t next_ = 0;
 };
 

@@ -403,13 +403,27 @@ base::Result<MotionProblem> ProblemOf(const World& world, const Body& body, cons
   return Builder(world, body, instance, arena).Run();
 }
 
-bool StandAlone(const RobotDef& type, Evaluator& e, World& world) {
+bool StandAlone(const RobotDef& type, Evaluator& e, World& world, const Loose* loose,
+                std::optional<TermId>* variable) {
   Arena& arena = e.arena();
+  bool has = false;
   for (const RobotItem& item : type.items) {
     const auto* group = std::get_if<ParamGroup>(&item);
     if (group == nullptr) continue;
     for (const Param& p : group->params) {
       if (!p.value.valid()) return false;
+      has = has || (loose != nullptr && p.name.text == loose->name);
+    }
+  }
+  Arguments given;
+  if (has) {
+    // Its own value says what it measures.
+    World other;
+    StandAlone(type, e, other);
+    const Value own = other.bodies[0].scope.names.at(loose->name);
+    if (own.kind == ValueKind::kQuantity) {
+      *variable = arena.Variable(arena.Declare(type.name.text + "." + loose->name, {}, arena.Real()));
+      given.emplace(loose->name, std::pair(Quantity(**variable, own.dimension), type.name.span));
     }
   }
   world.scope.names.emplace("world", FrameAt(Identity(arena)));
@@ -419,13 +433,14 @@ bool StandAlone(const RobotDef& type, Evaluator& e, World& world) {
   body.name = type.name;
   body.self = Identity(arena);
   body.scope.outer = &world.scope;
-  FillBody(type, {}, world.clock, body, e);
+  FillBody(type, given, world.clock, body, e);
   return true;
 }
 
-std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World& world) {
+std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World& world, const Loose* loose) {
   std::vector<MotionInstance> all;
-  if (!StandAlone(type, e, world)) return all;
+  std::optional<TermId> parameter;
+  if (!StandAlone(type, e, world, loose, &parameter)) return all;
   Arena& arena = e.arena();
   const Body& body = world.bodies[0];
   for (const RobotItem& item : type.items) {
@@ -451,6 +466,10 @@ std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World&
       instance.unknowns.push_back({p.name.text, some, *least, *most});
     }
     if (!known) continue;
+    if (parameter) {
+      instance.unknowns.push_back({loose->name, *parameter, arena.Number(arena.Real(), loose->least),
+                                   arena.Number(arena.Real(), loose->most)});
+    }
     const Scope scope = MotionScope(body, *motion, args, spans, e);
     instance.motion = motion;
     instance.text = motion->name.text;

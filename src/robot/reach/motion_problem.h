@@ -54,12 +54,20 @@ struct MotionProblem {
 base::Result<MotionProblem> ProblemOf(const World& world, const Body& body, const MotionInstance& instance,
                                       Arena& arena);
 
+/// A parameter of a robot type that may have any value between two bounds instead of its own.
+struct Loose {
+  std::string name;
+  expr::Rational least, most;  ///< in SI units
+};
+
 /// Makes `world` a world with one robot of this type at its origin. False if it has parameters without a
-/// value.
-bool StandAlone(const RobotDef& type, Evaluator& evaluator, World& world);
+/// value. Of the parameter `loose`, if it has it, the value is a variable, which is returned there.
+bool StandAlone(const RobotDef& type, Evaluator& evaluator, World& world, const Loose* loose = nullptr,
+                std::optional<TermId>* variable = nullptr);
 
 /// The motions of a robot type that can be looked at without a choreography: those whose parameters all have
 /// a value or a range. `world` becomes a world with one such robot, which the instances are about.
-std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& evaluator, World& world);
+std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& evaluator, World& world,
+                                      const Loose* loose = nullptr);
 
 }  // namespace rondo::robot

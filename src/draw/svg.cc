@@ -1,10 +1,10 @@
-#include "choreo/draw/svg.h"
+#include "draw/svg.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-namespace rondo::choreo {
+namespace rondo::draw {
 namespace {
 
 constexpr double kCharacter = 6.6;  // of 11 px in the font below, on average
@@ -68,6 +68,23 @@ void Svg::Line(double x1, double y1, double x2, double y2, std::string_view stro
   body_ += '\n';
 }
 
+void Svg::Polyline(const std::vector<std::array<double, 2>>& points, std::string_view stroke, double width,
+                   double opacity) {
+  if (points.empty()) return;
+  body_ += "<polyline points=\"";
+  const std::array<double, 2>* last = nullptr;
+  for (const auto& point : points) {
+    // Nobody sees less than a pixel.
+    if (last != nullptr && &point != &points.back() &&
+        std::hypot(point[0] - (*last)[0], point[1] - (*last)[1]) < 1)
+      continue;
+    body_ += fmt::format("{:.1f},{:.1f} ", point[0], point[1]);
+    last = &point;
+  }
+  body_ += fmt::format("\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:g}\" stroke-opacity=\"{:g}\"/>\n",
+                       stroke, width, opacity);
+}
+
 void Svg::Arrow(double x1, double y1, double x2, double y2, std::string_view stroke) {
   Line(x1, y1, x2, y2, stroke);
   const double length = std::hypot(x2 - x1, y2 - y1);
@@ -110,4 +127,4 @@ std::string Svg::Finish(double width, double height, std::string_view title) con
          body_ + "</svg>\n";
 }
 
-}  // namespace rondo::choreo
+}  // namespace rondo::draw

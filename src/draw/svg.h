@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace rondo::choreo {
+namespace rondo::draw {
 
 /// An SVG picture that is written element by element. Lengths in pixels, y downwards; text is escaped.
 class Svg {
@@ -22,6 +22,8 @@ class Svg {
   /// Half transparent.
   void Polygon(const std::vector<std::array<double, 2>>& points, const Style& style);
   void Line(double x1, double y1, double x2, double y2, std::string_view stroke, bool dashed = false);
+  void Polyline(const std::vector<std::array<double, 2>>& points, std::string_view stroke, double width = 1,
+                double opacity = 1);
   /// A line with a head at its end.
   void Arrow(double x1, double y1, double x2, double y2, std::string_view stroke);
   /// Bends out to x = `out` between its ends, with a head at the end.
@@ -39,4 +41,4 @@ class Svg {
   std::string body_;
 };
 
-}  // namespace rondo::choreo
+}  // namespace rondo::draw

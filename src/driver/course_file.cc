@@ -1,0 +1,130 @@
+#include "driver/course_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+
+namespace rondo::driver {
+
+namespace {
+
+constexpr const char* kFormat = "rondo-course/1";
+
+std::string Absolute(const std::string& file) {
+  std::error_code ignored;
+  return file.empty() ? file : std::filesystem::absolute(file, ignored).lexically_normal().string();
+}
+
+}  // namespace
+
+base::Result<bool> SaveCourse(const std::string& path, const CourseFile& file) {
+  nlohmann::json files = nlohmann::json::array();
+  for (const std::string& f : file.files) files.push_back(Absolute(f));
+  const nlohmann::json json{{"format", kFormat},
+                            {"files", files},
+                            {"spec", Absolute(file.spec)},
+                            {"contract", file.contract},
+                            {"breaks", file.claim},
+                            {"time", file.time},
+                            {"start", file.course.start},
+                            {"inputs", file.course.inputs},
+                            {"input_period", file.course.input_period}};
+  return base::WriteFileAtomically(path,
+                                   json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
+bool IsCourse(std::string_view text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  return json.is_object() && json.value("format", nlohmann::json()) == kFormat;
+}
+
+base::Result<CourseFile> ReadCourse(std::string_view text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object()) return base::Error{"this is not JSON"};
+  CourseFile file;
+  const auto text_at = [&](const char* key) {
+    return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : std::string();
+  };
+  const auto numbers = [](const nlohmann::json& list, std::vector<double>& out) {
+    if (!list.is_array()) return false;
+    for (const auto& x : list) {
+      if (!x.is_number()) return false;
+      out.push_back(x.get<double>());
+    }
+    return true;
+  };
+  const auto number_at = [&](const char* key, double& out) {
+    if (!json.contains(key) || !json[key].is_number()) return false;
+    out = json[key].get<double>();
+    return std::isfinite(out);
+  };
+  file.spec = text_at("spec");
+  file.contract = text_at("contract");
+  file.claim = text_at("breaks");
+  bool good = json.contains("files") && json["files"].is_array() && !json["files"].empty() &&
+              number_at("time", file.time) && number_at("input_period", file.course.input_period) &&
+              file.course.input_period > 0 && json.contains("start") &&
+              numbers(json["start"], file.course.start) && json.contains("inputs") &&
+              json["inputs"].is_array();
+  for (const auto& f : good ? json["files"] : nlohmann::json::array()) {
+    good = good && f.is_string();
+    if (good) file.files.push_back(f.get<std::string>());
+  }
+  for (const auto& slot : good ? json["inputs"] : nlohmann::json::array())
+    good = good && numbers(slot, file.course.inputs.emplace_back());
+  if (!good) return base::Error{"the run is not complete"};
+  return file;
+}
+
+base::Result<std::string> ReplayCourse(const CourseFile& file, Session& session) {
+  LoadedContracts loaded;
+  if (!LoadContracts(file.files, file.spec, nullptr, session, loaded))
+    return base::Error{fmt::format("`{}` cannot be used", file.files[0])};
+  const auto it = std::ranges::find(loaded.results, file.contract,
+                                    [](const ContractResult& r) { return r.made.problem.name; });
+  if (it == loaded.results.end() || !it->impossible.empty())
+    return base::Error{fmt::format("there is no contract `{}` any more", file.contract)};
+  const reach::Problem& problem = it->made.problem;
+  const auto claim = std::ranges::find(problem.claims, file.claim, &reach::Claim::name);
+  bool fits = claim != problem.claims.end() && file.course.start.size() == problem.states.size();
+  for (const auto& slot : file.course.inputs) fits = fits && slot.size() == problem.inputs.size();
+  if (!fits) return base::Error{fmt::format("the contract `{}` is another one now", file.contract)};
+  auto made = reach::Trajectories::Of(problem);
+  if (!made.ok()) return made.error();
+  reach::Trajectories trajectories = std::move(made).value();
+  for (size_t i = 0; i < file.course.start.size(); ++i) {
+    const double slack = 1e-9 * (1 + std::fabs(file.course.start[i]));
+    if (file.course.start[i] < problem.initial[i].lo - slack ||
+        file.course.start[i] > problem.initial[i].hi + slack)
+      return base::Error{fmt::format("it does not begin as the contract demands: `{}`", it->made.names[i])};
+  }
+  for (const auto& slot : file.course.inputs) {
+    for (size_t w = 0; w < slot.size(); ++w) {
+      if (!problem.inputs[w].bounds.Contains(slot[w]))
+        return base::Error{"an input is outside of its bounds"};
+    }
+  }
+  const double horizon = problem.horizon.ToDouble();
+  const auto c = static_cast<size_t>(claim - problem.claims.begin());
+  if (file.time < claim->from.ToDouble() - 1e-9 || file.time > claim->to.ToDouble() + 1e-9)
+    return base::Error{fmt::format("`{}` need not hold after {:.6g} s", file.claim, file.time)};
+  double miss = -HUGE_VAL;
+  trajectories.Run(
+      file.course, horizon / 400,
+      [&](double t, std::span<const double> x) {
+        if (t < file.time - 1e-12) return true;
+        miss = trajectories.Miss(c, x);
+        return false;
+      },
+      1e-10);
+  if (!(miss > 0)) return base::Error{fmt::format("`{}` holds after {:.6g} s", file.claim, file.time)};
+  return fmt::format("replayed: {} breaks `{}` after {:.6g} s", file.contract, file.claim, file.time) +
+         (miss < 1e299 ? fmt::format(", by {:.3g}", miss) : "");
+}
+
+}  // namespace rondo::driver

@@ -1,0 +1,74 @@
+#include "driver/tube_reuse.h"
+
+#include "reach/system/bounds.h"
+#include "reach/system/centred.h"
+#include "reach/system/text.h"
+
+namespace rondo::driver {
+
+namespace {
+
+std::string TextWith(reach::Problem problem, std::vector<reach::Claim> claims) {
+  problem.claims = std::move(claims);
+  return reach::ToText(problem);
+}
+
+// Does the claim hold wherever the tube is while it must?
+bool HoldsOn(const std::vector<reach::Leaf>& leaves, const reach::Problem& problem,
+             const reach::Claim& claim) {
+  auto formula = reach::Normalise(*problem.arena, claim.formula);
+  if (!formula.ok()) return false;
+  std::vector<reach::TermId> variables = problem.states;
+  for (const reach::Input& i : problem.inputs) variables.push_back(i.term);
+  const auto terms = reach::Compile(*problem.arena, variables, formula.value().terms);
+  if (!terms.ok()) return false;
+  const auto holds = [&](interval::Box box) {
+    for (const reach::Input& i : problem.inputs) box.push_back(i.bounds);
+    return reach::CheckBox(terms.value(), formula.value(), box) == reach::Truth::kTrue;
+  };
+  const double from = claim.from.ToDouble();
+  const double to = claim.to.ToDouble();
+  for (const reach::Leaf& leaf : leaves) {
+    if (leaf.tube.empty()) return false;
+    for (const reach::TubeSegment& s : leaf.tube) {
+      if (s.from <= to && s.to >= from && !holds(s.during)) return false;
+    }
+    if (to >= problem.horizon.ToDouble() && !holds(leaf.final)) return false;
+  }
+  return !leaves.empty();
+}
+
+}  // namespace
+
+std::string TubeReuse::Covers(const ContractResult& contract) const {
+  if (!contract.impossible.empty()) return "";
+  const reach::Problem problem = reach::Centred(contract.made.problem).problem;
+  const auto it = tubes_.find(TextWith(problem, {}));
+  if (it == tubes_.end()) return "";
+  for (const reach::Claim& claim : problem.claims) {
+    if (!it->second.claims.contains(TextWith(problem, {claim})) &&
+        !HoldsOn(it->second.leaves, problem, claim))
+      return "";
+  }
+  return it->second.contract;
+}
+
+void TubeReuse::Remember(const ContractResult& contract) {
+  if (!contract.outcome) return;
+  const auto* proved = std::get_if<reach::Proved>(&*contract.outcome);
+  if (proved == nullptr) return;
+  const reach::CentredProblem centred = reach::Centred(contract.made.problem);
+  Tube tube{contract.made.problem.name, proved->leaves, {}};
+  const auto move = [&](interval::Box& box) {
+    for (size_t i = 0; i < box.size(); ++i) box[i] = box[i] - reach::Enclose(centred.origin[i]);
+  };
+  for (reach::Leaf& leaf : tube.leaves) {
+    for (reach::TubeSegment& s : leaf.tube) move(s.during);
+    move(leaf.final);
+  }
+  for (const reach::Claim& claim : centred.problem.claims)
+    tube.claims.insert(TextWith(centred.problem, {claim}));
+  tubes_.emplace(TextWith(centred.problem, {}), std::move(tube));
+}
+
+}  // namespace rondo::driver
