@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <thread>
 
 #include "reach/simulation/batch.h"
@@ -50,19 +51,50 @@ base::Result<reach::Judge> OfModel(const reach::Problem& problem, double dt, siz
       });
 }
 
-base::Result<reach::Judge> OfProcess(const ContractResult& contract, const StatisticalOptions& options,
-                                     double dt, size_t steps,
-                                     std::vector<std::unique_ptr<reach::Simulator>>& simulators) {
-  const reach::Problem& problem = contract.made.problem;
-  auto process = reach::ProcessSimulator(options.simulator, contract.made.robot_states);
-  if (!process.ok()) return process.error();
-  const auto clock = std::ranges::find(contract.made.names, "clock") - contract.made.names.begin();
-  simulators.push_back(std::make_unique<Padded>(std::move(process).value(), problem.states.size(),
-                                                static_cast<size_t>(clock)));
+// A model with events: one precise trajectory after the other, with inputs at random.
+base::Result<reach::Judge> OfTrajectories(const reach::Problem& problem, double dt, uint64_t seed) {
   auto made = reach::Trajectories::Of(problem);
   if (!made.ok()) return made.error();
   auto judge = std::make_shared<reach::Trajectories>(std::move(made).value());
-  reach::Simulator* simulator = simulators.back().get();
+  auto random = std::make_shared<std::mt19937_64>(seed);
+  return reach::Judge([=, &problem](std::span<const std::vector<double>> starts, std::span<bool> failed) {
+    constexpr int kSlots = 16;
+    for (size_t i = 0; i < starts.size(); ++i) {
+      failed[i] = false;
+      if (judge->MissAssumed(starts[i]) > 0) continue;
+      reach::Course course{starts[i], {}, problem.horizon.ToDouble() / kSlots};
+      for (int slot = 0; slot < kSlots && !problem.inputs.empty(); ++slot) {
+        auto& values = course.inputs.emplace_back();
+        for (const reach::Input& input : problem.inputs) {
+          const double u = static_cast<double>((*random)() >> 11) * 0x1p-53;
+          values.push_back(input.bounds.lo + u * (input.bounds.hi - input.bounds.lo));
+        }
+      }
+      failed[i] = judge->Worst(course, dt, 0, 1e-8, base::StopToken()).miss > 0;
+    }
+    return base::Result<bool>(true);
+  });
+}
+
+// The user's simulator, or the model itself.
+base::Result<std::unique_ptr<reach::Simulator>> SimulatorFor(const ContractResult& contract,
+                                                             const StatisticalOptions& options) {
+  const reach::Problem& problem = contract.made.problem;
+  if (options.simulator.empty()) return reach::SimulatorOf(problem);
+  auto box = options.simulator.ends_with(".so")
+                 ? reach::LibrarySimulator(options.simulator, contract.made.robot_states)
+                 : reach::ProcessSimulator(options.simulator, contract.made.robot_states);
+  if (!box.ok()) return box.error();
+  const auto clock = std::ranges::find(contract.made.names, "clock") - contract.made.names.begin();
+  return std::unique_ptr<reach::Simulator>(
+      std::make_unique<Padded>(std::move(box).value(), problem.states.size(), static_cast<size_t>(clock)));
+}
+
+base::Result<reach::Judge> OfSimulator(reach::Simulator* simulator, const reach::Problem& problem, double dt,
+                                       size_t steps) {
+  auto made = reach::Trajectories::Of(problem);
+  if (!made.ok()) return made.error();
+  auto judge = std::make_shared<reach::Trajectories>(std::move(made).value());
   return reach::Judge([=, &problem](std::span<const std::vector<double>> starts, std::span<bool> failed) {
     const size_t n = problem.states.size();
     for (size_t i = 0; i < starts.size(); ++i) {
@@ -83,6 +115,59 @@ base::Result<reach::Judge> OfProcess(const ContractResult& contract, const Stati
   });
 }
 
+// Does the run leave a tube that was learned from others?
+reach::Judge OfTube(reach::Simulator* simulator, std::shared_ptr<const reach::SampledTube> tube, double dt,
+                    size_t steps) {
+  return [=](std::span<const std::vector<double>> starts, std::span<bool> failed) {
+    for (size_t i = 0; i < starts.size(); ++i) {
+      const auto trace = simulator->Run(starts[i], dt, steps);
+      if (!trace.ok()) return base::Result<bool>(trace.error());
+      failed[i] = !reach::Inside(*tube, trace.value());
+    }
+    return base::Result<bool>(true);
+  };
+}
+
+// By what runs are judged; a judge for each thread.
+base::Result<std::vector<reach::Judge>> Judges(const ContractResult& contract,
+                                               const StatisticalOptions& options, double dt, size_t steps,
+                                               std::vector<std::unique_ptr<reach::Simulator>>& simulators,
+                                               Statistical& result) {
+  const reach::Problem& problem = contract.made.problem;
+  const unsigned jobs = options.jobs > 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
+  std::vector<reach::Judge> judges;
+  std::shared_ptr<const reach::SampledTube> tube;
+  for (unsigned j = 0; j < jobs; ++j) {
+    const bool box = !options.simulator.empty() || !options.tube.empty();
+    if (box) {
+      auto simulator = SimulatorFor(contract, options);
+      if (!simulator.ok()) return simulator.error();
+      simulators.push_back(std::move(simulator).value());
+    }
+    if (!options.tube.empty()) {
+      if (tube == nullptr) {
+        reach::LearnOptions learn;
+        learn.learning = options.tube == "compat" ? reach::Learning::kCompat : reach::Learning::kCareful;
+        learn.seed = options.seed;
+        learn.dt = dt;
+        learn.steps = steps;
+        auto learned = reach::Learn(*simulators[0], problem.initial, learn);
+        if (!learned.ok()) return learned.error();
+        tube = std::make_shared<reach::SampledTube>(std::move(learned).value());
+        if (!tube->steps.empty()) result.final = tube->steps.back();
+      }
+      judges.push_back(OfTube(simulators.back().get(), tube, dt, steps));
+      continue;
+    }
+    auto judge = box                      ? OfSimulator(simulators.back().get(), problem, dt, steps)
+                 : problem.events.empty() ? OfModel(problem, dt, steps)
+                                          : OfTrajectories(problem, dt, options.seed + j);
+    if (!judge.ok()) return judge.error();
+    judges.push_back(std::move(judge).value());
+  }
+  return judges;
+}
+
 }  // namespace
 
 Statistical Sample(const ContractResult& contract, const StatisticalOptions& options,
@@ -94,21 +179,16 @@ Statistical Sample(const ContractResult& contract, const StatisticalOptions& opt
     result.trouble = contract.impossible;
     return result;
   }
-  const unsigned jobs = options.jobs > 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
   const double horizon = problem.horizon.ToDouble();
   const auto steps = static_cast<size_t>(std::ceil(horizon / options.dt - 1e-9));
   const double dt = horizon / static_cast<double>(steps);
   std::vector<std::unique_ptr<reach::Simulator>> simulators;
-  std::vector<reach::Judge> judges;
-  for (unsigned j = 0; j < jobs; ++j) {
-    auto judge = options.simulator.empty() ? OfModel(problem, dt, steps)
-                                           : OfProcess(contract, options, dt, steps, simulators);
-    if (!judge.ok()) {
-      result.trouble = judge.error().message;
-      return result;
-    }
-    judges.push_back(std::move(judge).value());
+  auto made = Judges(contract, options, dt, steps, simulators, result);
+  if (!made.ok()) {
+    result.trouble = made.error().message;
+    return result;
   }
+  const std::vector<reach::Judge> judges = std::move(made).value();
   auto calibration = reach::Calibrate(judges, problem.initial, options.runs, reach::BatchJudge::kLanes,
                                       options.confidence, options.seed, stop);
   if (!calibration.ok()) {
@@ -147,13 +227,19 @@ Statistical Sample(const ContractResult& contract, const StatisticalOptions& opt
 std::string StatisticalLine(const ContractResult& contract, const Statistical& s) {
   const std::string& name = contract.made.problem.name;
   if (!s.trouble.empty()) return fmt::format("unknown      {}: {}\n", name, s.trouble);
+  const bool tube = !s.final.empty();
   std::string text = fmt::format(
-      "statistical  {}: {} of {} runs fail; with confidence {:g} at most {:.4g} of all starts do ({:.2f} "
+      "statistical  {}: {} of {} runs {}; with confidence {:g} at most {:.4g} of all starts do ({:.2f} "
       "s)\n",
-      name, s.failures, s.runs, s.confidence, s.epsilon, s.seconds);
+      name, s.failures, s.runs, tube ? "leave the tube" : "fail", s.confidence, s.epsilon, s.seconds);
+  for (size_t i = 0; tube && i < s.final.size(); ++i) {
+    if (s.final[i].Width() > 0)
+      text += fmt::format("             {} in [{:.6g}, {:.6g}] at the end\n", contract.made.names[i],
+                          s.final[i].lo, s.final[i].hi);
+  }
   if (s.corner_failures > 0)
-    text +=
-        fmt::format("             {} of {} corners of the initial box fail\n", s.corner_failures, s.corners);
+    text += fmt::format("             {} of {} corners of the initial box {}\n", s.corner_failures, s.corners,
+                        tube ? "leave it" : "fail");
   return text;
 }
 
@@ -164,6 +250,11 @@ nlohmann::json ToJson(const ContractResult& contract, const Statistical& s,
   if (!s.trouble.empty()) {
     out["reason"] = s.trouble;
     return out;
+  }
+  if (!s.final.empty()) {
+    out["tube"] = options.tube;
+    for (size_t i = 0; i < s.final.size(); ++i)
+      out["final"][contract.made.names[i]] = {s.final[i].lo, s.final[i].hi};
   }
   out["runs"] = s.runs;
   out["failures"] = s.failures;

@@ -10,7 +10,8 @@ struct StatisticalOptions {
   uint64_t seed = 1;
   unsigned jobs = 0;
   double dt = 0.02;       ///< seconds between the instants that are looked at
-  std::string simulator;  ///< a command; empty: the model itself
+  std::string simulator;  ///< a command or a shared library (`.so`); empty: the model itself
+  std::string tube;  ///< `careful` or `compat`: judge a tube that is learned from runs; empty: the contract
 };
 
 /// What samples say about one contract: never a proof.
@@ -20,6 +21,7 @@ struct Statistical {
   double epsilon = 1, confidence = 0;
   size_t corners = 0, corner_failures = 0;
   std::vector<double> worst;
+  interval::Box final;  ///< of the tube, if one is judged
   double seconds = 0;
 };
 

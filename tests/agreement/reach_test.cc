@@ -19,6 +19,12 @@ size_t Wanted() {
   return text != nullptr ? std::strtoul(text, nullptr, 10) : 1000;
 }
 
+// Proofs of many seconds, which are looked at with RONDO_AUDIT only (`./dev nightly`).
+bool IsLong(const std::string& contract) {
+  return std::getenv("RONDO_AUDIT") == nullptr && contract.starts_with("Chaser: Abort") &&
+         contract != "Chaser: AbortAt(loss)";
+}
+
 struct Loaded {
   driver::Session session;
   std::unique_ptr<driver::Motion> motion;
@@ -108,6 +114,7 @@ TEST_P(Audit, NoTrajectoryLeavesItsTube) {
   for (driver::ContractResult& contract : loaded->contracts) {
     const reach::Problem& problem = contract.made.problem;
     ASSERT_TRUE(contract.impossible.empty()) << problem.name << ": " << contract.impossible;
+    if (IsLong(problem.name)) continue;
     reach::ProverOptions options;
     options.jobs = 2;
     auto outcome = reach::Decide(problem, options, base::StopToken());

@@ -8,6 +8,7 @@
 namespace rondo::reach {
 
 base::Result<BatchJudge> BatchJudge::Of(const Problem& problem) {
+  if (!problem.events.empty()) return base::Error{"a model with events is not simulated in batches"};
   BatchJudge judge;
   judge.problem_ = &problem;
   std::vector<TermId> variables = problem.states;

@@ -69,6 +69,7 @@ class ModelSimulator final : public Simulator {
 }  // namespace
 
 base::Result<std::unique_ptr<Simulator>> SimulatorOf(const Problem& problem, size_t substeps) {
+  if (!problem.events.empty()) return base::Error{"a model with events has no runs with steps of one length"};
   std::vector<TermId> variables = problem.states;
   for (const Input& i : problem.inputs) variables.push_back(i.term);
   auto rates = Compile(*problem.arena, variables, problem.rates);

@@ -30,7 +30,7 @@ class Simulator {
 /// A problem as a simulator: fourth-order Runge-Kutta with `substeps` in each step, inputs in the middle of
 /// their bounds. Many of them may run at once.
 ///
-/// @error if the problem cannot be evaluated.
+/// @error if the problem cannot be evaluated, or has events.
 base::Result<std::unique_ptr<Simulator>> SimulatorOf(const Problem& problem, size_t substeps = 1);
 
 /// A program of the user's. For each run one line is written to its standard input: the number of steps, dt,
@@ -39,5 +39,10 @@ base::Result<std::unique_ptr<Simulator>> SimulatorOf(const Problem& problem, siz
 ///
 /// @error if it cannot be started.
 base::Result<std::unique_ptr<Simulator>> ProcessSimulator(const std::string& command, size_t dimension);
+
+/// A shared library of the user's with the function of rondo_simulator.h.
+///
+/// @error if it cannot be loaded or lacks the function.
+base::Result<std::unique_ptr<Simulator>> LibrarySimulator(const std::string& path, size_t dimension);
 
 }  // namespace rondo::reach

@@ -75,13 +75,14 @@ class Runner::Crossing {
       Polynomial rest = time_;
       for (double& x : rest) x = -x;
       rest[0] += window_;
-      next = Move(*after.value(), Extended(there, rest), 1, true, state_.set);
+      next = Move(*after.value(), Extended(there, rest), 1, true, there);
     }
     if (next != Next::kChanged) {
       r_.attempt_.leaf.tube.resize(kept);
       r_.attempt_.leaf.steps.resize(steps);
       return next;
     }
+    state_.set = std::move(there);
     state_.time = end_;
     state_.possible = {{after.value()->modes[0], {}}};
     return next;
@@ -150,10 +151,7 @@ class Runner::Crossing {
       }
       r_.attempt_.leaf.steps.emplace_back(flow.stepper().h(), flow.set().degree);
       r_.Keep(stage, begin_, end_, flow.stepper().during());
-      if (!r_.During(flow, stage, begin_, end_)) {
-        to = flow.set();
-        return Next::kFailed;
-      }
+      if (!r_.During(flow, stage, begin_, end_)) return Next::kFailed;
     }
     to = Reduced(flow.set());
     return Next::kChanged;
@@ -174,10 +172,10 @@ class Runner::Crossing {
     return set;
   }
 
-  // Without the factor.
+  // Without the factor, if it has one.
   FlowSet Reduced(const FlowSet& from) const {
     FlowSet set = from;
-    if (set.dimension == state_.set.dimension) return set;
+    if (set.dimension == before_.dynamics.states) return set;
     --set.dimension;
     set.polynomials.resize(set.dimension * set.count);
     set.generators.conservativeResize(static_cast<Eigen::Index>(set.dimension), Eigen::NoChange);
@@ -338,7 +336,11 @@ class Runner::Crossing {
     if (!r_.claims_) return Next::kChanged;
     for (const StageClaim& claim : stage.claims) {
       if (claim.instant || claim.from >= end_ || claim.to <= begin_) continue;
-      if (truth(claim.formula, claim.first) == Truth::kTrue) continue;
+      const Truth holds = claim.formula.Check([&](size_t atom) {
+        const Interval range = observe.Range(claim.first + atom);
+        return claim.implied[atom] ? AtMostZero(range) : range;
+      });
+      if (holds == Truth::kTrue) continue;
       r_.NotEstablished(end_, claim.claim);
       return Next::kFailed;
     }

@@ -14,7 +14,8 @@ namespace {
 
 constexpr int kMostHalvings = 6;  // of the time of a step, for a claim
 constexpr size_t kMostForks = 64;
-constexpr size_t kMostSplits = 63;  // at events
+constexpr size_t kMostSplits = 63;  // at events, of one part
+constexpr size_t kMostDeep = 7;     // of one start
 
 // A side that is a point but for rounding needs no symbol.
 bool IsThin(Interval side) {
@@ -254,7 +255,7 @@ Runner::Next Runner::Meet(const Flow& flow, State& state, const Stage& stage, do
     if (next == Next::kChanged || symbol) state = std::move(from);
   }
   if (next == Next::kChanged || stop_.StopRequested()) return next;
-  if (symbol && splits_ < kMostSplits) return SplitAt(state, *symbol);
+  if (symbol && splits_ < kMostSplits && state.halvings < kMostDeep) return SplitAt(state, *symbol);
   return next == Next::kNo ? Window(flow, state, until) : next;
 }
 
@@ -264,6 +265,7 @@ Runner::Next Runner::SplitAt(const State& state, size_t symbol) {
   for (const bool upper : {false, true}) {
     State half = state;
     half.set = Half(state.set, *monomials_, symbol, upper);
+    ++half.halvings;
     if (!Follow(std::move(half))) return Next::kFailed;
   }
   return Next::kDone;
@@ -310,7 +312,7 @@ bool Runner::Instants(const Stage& stage, const FlowSet& set, Map& observe, doub
     applied = true;
     const Truth truth = claim.formula.Check([&](size_t atom) {
       const Interval range = observe.Range(claim.first + atom);
-      return start && claim.starts_below[atom] ? AtMostZero(range) : range;
+      return (start && claim.starts_below[atom]) || claim.implied[atom] ? AtMostZero(range) : range;
     });
     if (truth != Truth::kTrue) return NotEstablished(time, claim.claim);
   }
@@ -325,7 +327,8 @@ bool Runner::During(Flow& flow, const Stage& stage, double from, double to) {
       falls_, [](const std::vector<bool>& f) { return std::ranges::find(f, true) != f.end(); });
   if (falling) Fall(stage, stepper);
   const auto below = [&](size_t claim, size_t atom, Interval range) {
-    return falling && falls_[claim][atom] ? AtMostZero(range) : range;
+    const bool known = (falling && falls_[claim][atom]) || stage.claims[claim].implied[atom];
+    return known ? AtMostZero(range) : range;
   };
   // Most claims are clear from the box of the step.
   interval::Box box = stepper.during();

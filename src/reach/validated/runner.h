@@ -47,10 +47,11 @@ class Runner {
     double time = 0;
     double step = 0;  ///< the length of the next one
     std::vector<Possible> possible;
-    size_t sample = 0;   ///< of the controller, the next one
-    size_t rounds = 0;   ///< of events at this instant
-    bool look = true;    ///< for events at this instant?
-    bool begun = false;  ///< have the claims been looked at at the start?
+    size_t sample = 0;    ///< of the controller, the next one
+    size_t halvings = 0;  ///< of a symbol, at events
+    size_t rounds = 0;    ///< of events at this instant
+    bool look = true;     ///< for events at this instant?
+    bool begun = false;   ///< have the claims been looked at at the start?
   };
   enum class Next : uint8_t { kFailed, kChanged, kFork, kNo, kDone };
 

@@ -72,6 +72,7 @@ base::Result<bool> Stages::AddClaims(Stage& stage, size_t mode, std::vector<Term
                         claim.from.ToDouble(),
                         claim.to.ToDouble(),
                         claim.from == claim.to,
+                        {},
                         {}};
     terms.insert(terms.end(), compiled.formula.terms.begin(), compiled.formula.terms.end());
     stage.claims.push_back(std::move(compiled));
@@ -178,8 +179,12 @@ base::Result<std::shared_ptr<const Stage>> Stages::Make(const std::vector<Mode>&
   for (size_t i = 0; i < problem.copy_of.size(); ++i) {
     if (problem.copy_of[i]) originals.emplace(problem.states[i], problem.states[*problem.copy_of[i]]);
   }
+  const TermId zero = arena.Number(arena.Real(), Rational(0));
   for (StageClaim& claim : stage->claims) {
     for (const TermId term : claim.formula.terms) {
+      claim.implied.push_back(std::ranges::any_of(stage->guards, [&](const Guard& g) {
+        return g.mode == claim.mode && g.IsComparison() && arena.Add(g.formula.terms[0], term) == zero;
+      }));
       const TermId start = expr::Substitute(arena, term, originals);
       const bool number = arena.IsNumber(start) && !(arena.number(start) > Rational(0));
       // What a controller sets has another value as soon as it begins, and inputs at any time.

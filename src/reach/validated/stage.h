@@ -19,6 +19,7 @@ struct StageClaim {
   double from = 0, to = 0;
   bool instant = false;
   std::vector<bool> starts_below;  ///< by term: at most zero at the start, exactly, and does it never jump?
+  std::vector<bool> implied;       ///< by term: at most zero in this mode, or an event would have ended it?
 };
 
 /// The condition of an event that can happen in a mode.

@@ -248,7 +248,7 @@ Control ReadControl(const Body& body, const ControlDef& def, const Scope& scope,
   ReadLaws(body, def.laws, {&body.inputs, &body.memory}, scope, e, control.laws);
   for (const WhenDef& when : def.events) {
     ControlEvent event;
-    event.condition = e.Formula(when.condition, scope, "the condition of an event");
+    event.condition = e.Formula(when.condition, scope, "a condition");
     ReadLaws(body, when.updates, {&body.memory}, scope, e, event.updates);
     control.events.push_back(std::move(event));
   }

@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""rondo reach beyond its verdicts: refutations replay and damaged ones are refused, pictures, sweeps, tubes of one
+robot that serve others, tubes that are learned, simulators of the user's.
+
+  reachability.py RONDO
+"""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import xml.dom.minidom
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+EXAMPLES = ROOT / "examples" / "reach"
+checks = [0, 0]
+
+
+def check(condition, what):
+    checks[0 if condition else 1] += 1
+    if not condition:
+        print(f"FAILED: {what}")
+
+
+def run(rondo, *args):
+    return subprocess.run([rondo, *map(str, args)], capture_output=True, text=True, timeout=600)
+
+
+def replays(rondo, folder):
+    saved = folder / "wide.json"
+    done = run(rondo, "reach", "--contract", "Wide", "--save", saved, EXAMPLES / "quadrotor_altitude.rondo")
+    check(done.returncode == 1 and f"rondo replay {saved}" in done.stdout, f"a refutation is saved: {done.stdout}")
+    done = run(rondo, "replay", saved)
+    check(done.returncode == 0 and "breaks `during`" in done.stdout, f"it replays: {done.stdout}{done.stderr}")
+    good = json.loads(saved.read_text())
+    damaged = {
+        "a start elsewhere": {"start": [5.0] + good["start"][1:]},
+        "a start that breaks nothing": {"start": [0.0] * len(good["start"])},
+        "another time": {"time": 0.1},
+        "a time after the end": {"time": 1e9},
+        "too short a start": {"start": good["start"][:3]},
+        "another contract": {"contract": "Quadrotor: Nothing()"},
+        "another claim": {"breaks": "nothing"},
+        "no file": {"files": ["/nowhere.rondo"]},
+        "no numbers": {"start": ["x"]},
+        "no list": {"inputs": 3},
+        "no period": {"input_period": 0},
+    }
+    for what, change in damaged.items():
+        saved.write_text(json.dumps({**good, **change}))
+        done = run(rondo, "replay", saved)
+        check(done.returncode == 1, f"{what} is refused: {done.stdout}")
+    for text in ("", "{", '{"format": "rondo-course/1"}', '{"format": "rondo-course/1", "files": []}'):
+        saved.write_text(text)
+        check(run(rondo, "replay", saved).returncode == 1, f"`{text}` is refused")
+
+
+def pictures(rondo, folder):
+    svg = folder / "tube.svg"
+    done = run(rondo, "reach", "--svg", svg, EXAMPLES / "lotka_volterra.rondo")
+    check(done.returncode == 0 and svg.exists(), "a picture of a proof")
+    xml.dom.minidom.parse(str(svg))
+    text = svg.read_text()
+    check("y over x" in text and "crossings" in text, "with the plane and every state")
+    done = run(rondo, "reach", "--svg", folder / "q.svg", "--save", folder / "q.json", EXAMPLES / "quadrotor_altitude.rondo")
+    check(all((folder / f"q-{k}.svg").exists() for k in (1, 2, 3)), f"a picture for each contract: {done.stdout}")
+    xml.dom.minidom.parse(str(folder / "q-3.svg"))
+    done = run(rondo, "reach", "--svg", svg / "x.svg", EXAMPLES / "van_der_pol.rondo")
+    check(done.returncode == 1, "a picture that cannot be written")
+
+
+def sweeps(rondo, folder):
+    model = folder / "ball.rondo"
+    # Critically damped at gain 4: less damping overshoots.
+    model.write_text("""robot Ball {
+  param damping = 4
+  state x: length in [-3 m, 3 m]
+  state v: speed in [-9 m / 1 s, 9 m / 1 s]
+  input push: acceleration
+  dynamics { x' = v; v' = push }
+  motion Settle() noninterruptible [5 s, 5 s] {
+    modifies x, v
+    pre x == -1 m and v == 0
+    during x < 5 cm
+    control { push = -4 / 1 s / 1 s * x - damping / 1 s * v }
+  }
+}
+""")
+    done = run(rondo, "reach", "--json", "--sweep", "damping", "1..8", "--parts", "64", model)
+    parts = json.loads(done.stdout)["sweeps"][0]["parts"]
+    check(parts[0]["verdict"] == "refuted" and parts[-1]["verdict"] == "proved" and parts[-1]["to"] == 8, f"{parts}")
+    # exp(-pi z / sqrt(1 - z^2)) = 0.05 with z = damping / 4: 2.76
+    boundary = next(p["from"] for p in parts if p["verdict"] == "proved")
+    check(2.76 < boundary < 2.76 + 3 * 7 / 64, f"the proved boundary is {boundary}")
+    refuted = next(p["to"] for p in reversed(parts) if p["verdict"] == "refuted")
+    check(refuted <= boundary and refuted > 2.4, f"refuted up to {refuted}")
+    check(run(rondo, "reach", "--sweep", "nothing", "1..2", model).returncode == 1, "a parameter that is not there")
+    check(run(rondo, "reach", "--sweep", "damping", "2..1", model).returncode == 1, "a range that is none")
+    check(run(rondo, "reach", "--sweep", "damping", "1", model).returncode == 1, "no range")
+
+
+def reuse(rondo):
+    done = run(rondo, "reach", "--json", "--no-cache", ROOT / "examples" / "choreo" / "driven.rondo")
+    contracts = json.loads(done.stdout)["contracts"]
+    check(done.returncode == 0 and sum("same_as" in c for c in contracts) == 2, f"two of four tubes serve: {done.stdout}")
+
+
+def samples(rondo, folder):
+    model = EXAMPLES / "van_der_pol.rondo"
+    done = run(rondo, "reach", "--json", "--statistical", "--tube", "compat", "--runs", "500", model)
+    compat = json.loads(done.stdout)["contracts"][0]
+    done = run(rondo, "reach", "--json", "--statistical", "--tube", "careful", "--runs", "500", model)
+    careful = json.loads(done.stdout)["contracts"][0]
+    check(done.returncode == 3, "a tube of samples proves nothing")
+    check(compat["corner_failures"] > 0 and careful["corner_failures"] == 0, f"{compat} {careful}")
+    done = run(rondo, "reach", "--json", "--statistical", "--runs", "300", EXAMPLES / "lotka_volterra.rondo")
+    check(json.loads(done.stdout)["contracts"][0]["failures"] == 0, f"events are simulated: {done.stdout}")
+    done = run(rondo, "reach", "--statistical", "--simulator", folder / "none.so", model)
+    check("cannot load" in done.stdout, f"a library that is not there: {done.stdout}")
+    compiler = os.environ.get("CC") or shutil.which("cc")
+    if compiler is None:
+        return
+    source = folder / "simulator.c"
+    source.write_text('''#include "rondo_simulator.h"
+int rondo_simulate(const double* start, size_t n, double dt, size_t steps, double* trace) {
+  double x = start[0], y = start[1], h = dt / 200;
+  for (size_t k = 0; k <= steps; ++k) {
+    trace[k * n] = x;
+    trace[k * n + 1] = y;
+    for (int s = 0; s < 200; ++s) {
+      double a = y, b = (1 - x * x) * y - x;
+      x += h * a;
+      y += h * b;
+    }
+  }
+  return FAIL;
+}
+''')
+    for fail in (0, 7):
+        library = folder / f"simulator{fail}.so"
+        subprocess.run([compiler, "-shared", "-fPIC", f"-DFAIL={fail}", "-I", ROOT / "src" / "reach" / "simulation",
+                        "-o", library, source], check=True)
+        done = run(rondo, "reach", "--json", "--statistical", "--runs", "200", "--simulator", library, model)
+        result = json.loads(done.stdout)["contracts"][0]
+        if fail == 0:
+            check(result["failures"] == 0 and result["verdict"] == "statistical", f"a library simulates: {result}")
+        else:
+            check(result["verdict"] == "unknown" and "failed with 7" in result["reason"], f"a library fails: {result}")
+
+
+def main():
+    rondo = os.path.abspath(sys.argv[1])
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        os.environ["XDG_CACHE_HOME"] = str(folder / "cache")
+        replays(rondo, folder)
+        pictures(rondo, folder)
+        sweeps(rondo, folder)
+        reuse(rondo)
+        samples(rondo, folder)
+    print(f"{checks[0]} checks passed, {checks[1]} failed")
+    return 1 if checks[1] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
