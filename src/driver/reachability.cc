@@ -152,6 +152,9 @@ void DecideContract(ContractResult& r, const DecideOptions& options, const base:
   r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (outcome.ok()) {
     r.outcome = std::move(outcome).value();
+    auto* open = std::get_if<reach::Undecided>(&*r.outcome);
+    if (open != nullptr && open->reason == "stopped" && !stop.cancelled())
+      open->reason = "out of time (--timeout)";
   } else {
     r.impossible = outcome.error().message;
   }

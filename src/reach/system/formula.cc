@@ -148,7 +148,10 @@ Truth CheckNode(const Formula& f, size_t n, const std::function<Interval(size_t)
 
 double MissOf(const Formula& f, size_t n, const std::function<double(size_t)>& value) {
   const Formula::Node& node = f.nodes[n];
-  if (node.kind == Formula::Kind::kAtom) return value(node.atom);
+  if (node.kind == Formula::Kind::kAtom) {
+    const double v = value(node.atom);
+    return node.strict && v == 0 ? 1 : v;
+  }
   const bool conjunction = node.kind == Formula::Kind::kAnd;
   double result = conjunction ? -1e300 : 1e300;
   for (const size_t p : node.parts) {

@@ -24,8 +24,8 @@ struct Formula {
 
   /// What is known of the formula where the terms lie in these intervals.
   Truth Check(const std::function<Interval(size_t)>& range) const;
-  /// By how much the formula fails, at most, where the terms have these values: 0 or less if it holds. Strict
-  /// and non-strict comparisons are not told apart.
+  /// By how much the formula fails, at most, where the terms have these values: 0 or less if it holds. A
+  /// strict comparison of what is exactly equal fails by 1: modes are exact.
   double Miss(const std::function<double(size_t)>& value) const;
 };
 

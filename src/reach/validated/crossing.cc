@@ -333,6 +333,12 @@ class Runner::Crossing {
       const bool expected = is_before && g.event == guard_->event;
       if (!expected && truth(g.formula, g.first) != Truth::kFalse) return Next::kNo;
     }
+    for (const StageQuery& q : stage.queries) {
+      if (r_.queries_ == nullptr) break;
+      Interval& answer = r_.answers_[q.query];
+      const Query& query = (*r_.queries_)[q.query];
+      if (query.from <= end_ && query.to >= begin_) answer = interval::Hull(answer, observe.Range(q.output));
+    }
     if (!r_.claims_) return Next::kChanged;
     for (const StageClaim& claim : stage.claims) {
       if (claim.instant || claim.from >= end_ || claim.to <= begin_) continue;

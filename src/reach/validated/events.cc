@@ -194,7 +194,7 @@ Runner::Next Runner::Window(const Flow& before, State& state, double until) {
         return stage.modes[g.mode] == p.mode && Strictly(g, observe);
       });
     });
-    if (all.empty()) return failed("no mode is possible");
+    if (all.empty()) return failed("events follow one another without end");
     state.set = flow.set();
     flow.Settle(state.set);
     state.time = flow.time();

@@ -115,6 +115,49 @@ TEST_F(Events, BranchesOfATouchAreFollowed) {
   EXPECT_FALSE(std::holds_alternative<Proved>(Decided(make(1.31))));
 }
 
+// What fails while the set is brought to one instant again leaves nothing behind.
+TEST_F(Events, ClaimsThatFailJustAfterAnEvent) {
+  Problem p = Make({x_}, {Num(1)}, {{-0.3, 0}}, 1);
+  When(p, 0, arena_.Le(Num(0.3), x_), 1);
+  Always(p, arena_.Le(x_, Num(0.9)));
+  const Outcome outcome = Decided(p);
+  ASSERT_TRUE(std::holds_alternative<Refuted>(outcome));
+}
+
+// A count of events that is reached only at an event: the refutation does not depend on its exact instant.
+TEST_F(Events, CountsAreRefuted) {
+  Problem p = Make({x_}, {In(0, Num(1), Num(-1))}, {{0, 0}}, 2);
+  When(p, 0, arena_.Le(Num(1), x_), 1);
+  When(p, 1, arena_.Le(x_, Num(0.9)), 0);
+  Always(p, arena_.Le(count_, Num(9)));
+  EXPECT_TRUE(std::holds_alternative<Refuted>(Decided(p)));
+}
+
+// x = 1 - (t - tau) later on: a query along the polynomials knows how it depends on the start.
+TEST_F(Events, TubesAnswerQueries) {
+  const TermId start = Var("start");
+  Problem p = Make({x_, start}, {In(0, Num(2), Num(-1)), Num(0)}, {{0, 0.2}, {0, 0.2}}, 2);
+  p.copy_of = {std::nullopt, size_t{0}, std::nullopt, std::nullopt};
+  When(p, 0, arena_.Le(Num(1), x_), 1);
+  Always(p, arena_.Le(x_, Num(2)));
+  const Outcome outcome = Decided(p);
+  ASSERT_TRUE(std::holds_alternative<Proved>(outcome));
+  const TermId twice = arena_.Mul(Num(2), x_);
+  const auto answers = RangesOn(p, std::get<Proved>(outcome),
+                                {{arena_.Add(twice, start), 1.75, 2},  // 2 (1 - t + tau) + x0 = 3 - 2 t
+                                 {arena_.Sub(x_, start), 0, 0.25},     // 2 t
+                                 {x_, 0, 2}},
+                                {}, base::StopToken());
+  ASSERT_TRUE(answers.ok());
+  const auto near = [](Interval i, double lo, double hi) {
+    return i.lo <= lo && i.lo > lo - 1e-3 && i.hi >= hi && i.hi < hi + 1e-3;
+  };
+  EXPECT_TRUE(near(answers.value()[0], -1, -0.5)) << answers.value()[0].lo << ' ' << answers.value()[0].hi;
+  EXPECT_TRUE(near(answers.value()[1], 0, 0.5)) << answers.value()[1].lo << ' ' << answers.value()[1].hi;
+  EXPECT_TRUE(answers.value()[2].Contains({-0.6, 1}));
+  EXPECT_LT(answers.value()[2].hi, 1.1);
+}
+
 TEST_F(Events, WhatHoldsAtTheStartHappensThen) {
   Problem p = Make({x_}, {In(2, Num(1), Num(-1))}, {{0, 1}}, 1);
   When(p, 0, arena_.Le(Num(-1), x_), 1);  // both at once

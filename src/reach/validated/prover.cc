@@ -10,6 +10,26 @@
 
 namespace rondo::reach {
 
+base::Result<std::vector<Interval>> RangesOn(const Problem& problem, const Proved& proved,
+                                             const std::vector<Query>& queries, const ProverOptions& options,
+                                             const base::StopToken& stop) {
+  std::vector<TermId> terms;
+  for (const Query& q : queries) terms.push_back(q.term);
+  auto made = Stages::Of(problem, std::move(terms));
+  if (!made.ok()) return made.error();
+  std::vector<std::optional<std::vector<Interval>>> answers(proved.leaves.size());
+  base::ParallelFor(proved.leaves.size(), options.jobs, [&](size_t i) {
+    answers[i] = Runner(*made.value(), options, options.flow, proved.leaves[i].initial, problem.initial, stop)
+                     .Ask(queries);
+  });
+  std::vector<Interval> all(queries.size(), Interval::Empty());
+  for (const auto& one : answers) {
+    if (!one) return base::Error{stop.StopRequested() ? "stopped" : "the tube cannot be followed again"};
+    for (size_t q = 0; q < all.size(); ++q) all[q] = interval::Hull(all[q], (*one)[q]);
+  }
+  return all;
+}
+
 base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& options,
                              const base::StopToken& stop) {
   auto made = Stages::Of(problem);
@@ -24,6 +44,10 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
   Proved proved;
   std::string reason;
   bool searched = false;
+  // Where events are only possible, tubes are slow: what is plainly false need not wait for them.
+  if (!problem.events.empty()) {
+    if (auto refuted = search.Run(std::min<size_t>(options.samples, 32))) return Outcome{std::move(*refuted)};
+  }
   FlowOptions flow = options.flow;
   size_t done = 0;
   while (!open.empty()) {
@@ -52,7 +76,7 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
       }
       if (!searched) {
         searched = true;
-        if (auto refuted = search.Run()) return Outcome{std::move(*refuted)};
+        if (auto refuted = search.Run(options.samples)) return Outcome{std::move(*refuted)};
       }
       const Interval side = open[i][a.split];
       const double middle = side.Middle();

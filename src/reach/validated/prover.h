@@ -59,6 +59,21 @@ struct ProverOptions {
   std::function<void(size_t, size_t)> progress;
 };
 
+/// What a term can be during an interval of time.
+struct Query {
+  TermId term;
+  double from = 0, to = 0;
+};
+
+/// Encloses the values of terms over the states and inputs on every course that a proof is about, each during
+/// its interval: by polynomials, as sharply as claims are decided. The tube is followed again, from the parts
+/// that it has.
+///
+/// @error if a term has no meaning, or no value somewhere.
+base::Result<std::vector<Interval>> RangesOn(const Problem& problem, const Proved& proved,
+                                             const std::vector<Query>& queries, const ProverOptions& options,
+                                             const base::StopToken& stop);
+
 /// Decides whether every claim of the problem holds on every course. Proofs are rigorous; a refutation is a
 /// trajectory.
 ///

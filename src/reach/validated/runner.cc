@@ -73,6 +73,27 @@ bool Runner::Breaks(size_t claim, double time) {
   return Follow(Begin());
 }
 
+std::optional<std::vector<Interval>> Runner::Ask(const std::vector<Query>& queries) {
+  claims_ = false;
+  queries_ = &queries;
+  answers_.assign(queries.size(), Interval::Empty());
+  if (!Follow(Begin())) return std::nullopt;
+  return answers_;
+}
+
+// What is asked for during a step, which happens at some time of [from, to].
+void Runner::Answer(Flow& flow, const Stage& stage, double from, double to) {
+  Stepper& stepper = flow.stepper();
+  const bool sharp = from == flow.begin() && to == flow.time();
+  for (const StageQuery& q : stage.queries) {
+    const Query& query = (*queries_)[q.query];
+    if (query.from > to || query.to < from) continue;
+    const double begin = sharp ? std::clamp(query.from - from, 0.0, stepper.h()) : 0;
+    const double end = sharp ? std::clamp(query.to - from, begin, stepper.h()) : stepper.h();
+    answers_[q.query] = interval::Hull(answers_[q.query], stepper.Observed(q.output, begin, end, true));
+  }
+}
+
 bool Runner::Fail(double time, std::string reason) {
   attempt_.reason = std::move(reason);
   attempt_.time = time;
@@ -162,12 +183,11 @@ Runner::Next Runner::Along(State& state, const Stage& stage) {
     });
     if (calm) return Next::kFork;
   }
-  earlier_.reset();
   while (flow.time() < horizon_) {
+    earlier_.reset();  // no event window reaches over an instant at which something is checked
     const bool due = state.sample < stages_.samples() &&
                      flow.time() >= stages_.period() * static_cast<double>(state.sample);
     if (due) {
-      earlier_.reset();
       FlowSet next;
       if (!control->Apply(flow.set())) return failed("the controller is not defined on the whole set");
       control->Finish(flow.set(), next, capacity);
@@ -203,10 +223,10 @@ Runner::Next Runner::Along(State& state, const Stage& stage) {
     if (stage.discrete[i])
       attempt_.leaf.final[i] = interval::Hull(attempt_.leaf.final[i], *stage.discrete[i]);
   }
-  if (!claims_) {
+  if (broken_) {
     if (!observe.Apply(flow.set())) return failed("a claim is not defined");
     for (const StageClaim& claim : stage.claims) {
-      if (claim.claim == broken_ && claim.formula.Check([&](size_t atom) {
+      if (claim.claim == *broken_ && claim.formula.Check([&](size_t atom) {
             return observe.Range(claim.first + atom);
           }) != Truth::kFalse)
         return failed("it may hold");
@@ -308,7 +328,8 @@ bool Runner::Instants(const Stage& stage, const FlowSet& set, Map& observe, doub
   bool applied = false;
   for (const StageClaim& claim : stage.claims) {
     if (claim.from != time || (!claim.instant && !start)) continue;
-    if (!applied && !observe.Apply(set)) return Fail(time, "a claim is not defined on the whole set");
+    if (!applied && !observe.Apply(set))
+      return Fail(time, "a claim, or the condition of an event, is not defined on the whole set");
     applied = true;
     const Truth truth = claim.formula.Check([&](size_t atom) {
       const Interval range = observe.Range(claim.first + atom);
@@ -321,6 +342,7 @@ bool Runner::Instants(const Stage& stage, const FlowSet& set, Map& observe, doub
 
 // The claims during a step, which happens at some time of [from, to].
 bool Runner::During(Flow& flow, const Stage& stage, double from, double to) {
+  if (queries_ != nullptr) Answer(flow, stage, from, to);
   if (!claims_) return true;
   Stepper& stepper = flow.stepper();
   const bool falling = std::ranges::any_of(

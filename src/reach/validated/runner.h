@@ -33,6 +33,8 @@ class Runner {
   Attempt Run();
   /// Instead of proving: does the claim certainly fail at this time for all of the set?
   bool Breaks(size_t claim, double time);
+  /// Instead: what the queries can be; nothing if the set cannot be followed.
+  std::optional<std::vector<Interval>> Ask(const std::vector<Query>& queries);
 
  private:
   // A mode that is possible, and what is known of the terms of its events.
@@ -75,6 +77,7 @@ class Runner {
   void Fall(const Stage& stage, Stepper& stepper);
   bool Instants(const Stage& stage, const FlowSet& set, Map& observe, double time, bool start);
   bool During(Flow& flow, const Stage& stage, double from, double to);
+  void Answer(Flow& flow, const Stage& stage, double from, double to);
   static Interval AtMostZero(Interval range) { return {std::min(range.lo, 0.0), std::min(range.hi, 0.0)}; }
 
   // Events.
@@ -97,8 +100,10 @@ class Runner {
   const interval::Box& whole_;
   const base::StopToken& stop_;
   double horizon_;
-  bool claims_ = true;  ///< are they to be looked at?
-  size_t broken_ = 0;   ///< else: the one that should fail at the horizon
+  bool claims_ = true;            ///< are they to be looked at?
+  std::optional<size_t> broken_;  ///< else: the one that should fail at the horizon
+  const std::vector<Query>* queries_ = nullptr;
+  std::vector<Interval> answers_;
   std::vector<int> symbol_of_;
   std::vector<std::vector<bool>> falls_;  ///< by claim of the stage and term: still below zero?
   std::shared_ptr<Monomials> monomials_;

@@ -72,6 +72,14 @@ bool Search::Repeats(const Refuted& refuted) {
   const double horizon = stages_.horizon();
   const Violation fine = trajectories_.Worst(refuted.course, horizon / 20000, 0, 1e-13, stop_);
   if (stop_.StopRequested() || fine.miss <= 0) return false;
+  if (!problem_.events.empty()) {
+    // Events shift instants: both runs have to break the claim clearly, and nearly at the same time.
+    double size = 1;
+    for (const double x : fine.state) size = std::fmax(size, std::fabs(x));
+    return fine.claim == refuted.violation.claim && fine.miss > 1e-7 * size &&
+           refuted.violation.miss > 1e-7 * size &&
+           std::fabs(fine.time - refuted.violation.time) <= horizon / 100;
+  }
   // Both stop at the first instant that they look at and see a violation: go on to the same one.
   double apart = 0;
   double miss = -1e300;
@@ -94,14 +102,14 @@ bool Search::Repeats(const Refuted& refuted) {
   return miss > 1e-7 * size && miss > 100 * apart;
 }
 
-std::optional<Refuted> Search::Run() {
+std::optional<Refuted> Search::Run(size_t samples) {
   const interval::Box& box = problem_.initial;
   const size_t n = box.size();
   size_t free = 0;
   for (const Interval& side : box) free += side.IsPoint() ? 0 : 1;
-  for (size_t s = 0; s < options_.samples && !stop_.StopRequested(); ++s) {
+  for (size_t s = 0; s < samples && !stop_.StopRequested(); ++s) {
     std::vector<double> start(n);
-    const bool corner = s < options_.samples / 2 && (free >= 16 || s < size_t{1} << free);
+    const bool corner = s < samples / 2 && (free >= 16 || s < size_t{1} << free);
     size_t bit = 0;
     for (size_t i = 0; i < n; ++i) {
       if (box[i].IsPoint()) {

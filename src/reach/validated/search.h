@@ -22,8 +22,8 @@ class Search {
         stop_(stop),
         random_(options.seed) {}
 
-  /// Of all starts.
-  std::optional<Refuted> Run();
+  /// Of so many starts.
+  std::optional<Refuted> Run(size_t samples);
   /// From here, if it is a start.
   std::optional<Refuted> Try(std::vector<double> start);
 

@@ -10,9 +10,10 @@
 
 namespace rondo::reach {
 
-base::Result<std::unique_ptr<Stages>> Stages::Of(const Problem& problem) {
+base::Result<std::unique_ptr<Stages>> Stages::Of(const Problem& problem, std::vector<TermId> asked) {
   auto stages = std::make_unique<Stages>();
   stages->problem_ = &problem;
+  stages->asked_ = std::move(asked);
   expr::Arena& arena = *problem.arena;
   auto modes = Modes::Of(problem);
   if (!modes.ok()) return modes.error();
@@ -145,6 +146,10 @@ base::Result<std::shared_ptr<const Stage>> Stages::Make(const std::vector<Mode>&
     if (!claims.ok()) return claims.error();
     auto guards = AddGuards(*stage, m, terms);
     if (!guards.ok()) return guards.error();
+    for (size_t q = 0; q < asked_.size(); ++q) {
+      stage->queries.push_back({q, terms.size()});
+      terms.push_back(modes_.In(modes[m], asked_[q]));
+    }
   }
   outputs.insert(outputs.end(), terms.begin(), terms.end());
   auto program = Compile(arena, variables, outputs, states);

@@ -34,6 +34,12 @@ struct Guard {
   bool IsComparison() const { return formula.nodes[formula.root].kind == Formula::Kind::kAtom; }
 };
 
+/// A term that is asked for in a mode.
+struct StageQuery {
+  size_t query = 0;
+  size_t output = 0;  ///< among the observed ones
+};
+
 /// A problem while its discrete states have the values of one of some modes.
 ///
 /// Variables of all programs: the states; if it is scaled, one more, by which all rates are multiplied; the
@@ -45,6 +51,7 @@ struct Stage {
   Program updates;
   std::vector<StageClaim> claims;
   std::vector<Guard> guards;
+  std::vector<StageQuery> queries;
   std::vector<std::optional<Interval>> discrete;  ///< by state: its values, if it is discrete
   bool ambiguous = false;  ///< does anything that moves depend on discrete states that differ?
 };
@@ -53,7 +60,9 @@ struct Stage {
 class Stages {
  public:
   /// @error if the problem uses what cannot be analysed.
-  static base::Result<std::unique_ptr<Stages>> Of(const Problem& problem);
+  ///
+  /// @param asked  terms that are observed besides claims and conditions.
+  static base::Result<std::unique_ptr<Stages>> Of(const Problem& problem, std::vector<TermId> asked = {});
 
   /// The stage for these modes, ascending. `scaled`: with a factor for all rates as a further state, whose
   /// own rate is zero.
@@ -78,6 +87,7 @@ class Stages {
   base::Result<bool> AddGuards(Stage& stage, size_t mode, std::vector<TermId>& terms);
 
   const Problem* problem_ = nullptr;
+  std::vector<TermId> asked_;
   Modes modes_;
   Formula assumed_;
   Program assumed_terms_;
