@@ -232,10 +232,12 @@ class Run {
                  {"status", status},
                  {"contracts", list},
                  {"runs", saved_},
+                 {"left_out", loaded_.left_out},
                  {"diagnostics", DiagnosticsToJson(session_.sources, session_.diagnostics)}});
       return status;
     }
     if (!loaded_.results.empty()) Print(ContractTable(loaded_.results));
+    for (const std::string& motion : loaded_.left_out) Print(fmt::format("not looked at: {}\n", motion));
     if (!session_.diagnostics.all().empty()) {
       if (!loaded_.results.empty()) Print("\n");
       PrintDiagnostics(session_.sources, session_.diagnostics);

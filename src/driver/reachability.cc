@@ -30,7 +30,8 @@ const reach::Problem& ProblemOf(const ContractResult& r) { return r.made.problem
 
 }  // namespace
 
-std::vector<ContractResult> ContractsOf(Motion& motion, const robot::Loose* loose) {
+std::vector<ContractResult> ContractsOf(Motion& motion, const robot::Loose* loose,
+                                        std::vector<std::string>* left_out) {
   std::vector<ContractResult> all;
   const choreo::Graph* of = nullptr;
   const auto add = [&](const robot::World& world, const robot::Body& body,
@@ -68,7 +69,7 @@ std::vector<ContractResult> ContractsOf(Motion& motion, const robot::Loose* loos
     if (type == nullptr) continue;
     auto world = std::make_shared<robot::World>();
     for (const robot::MotionInstance& i :
-         robot::MotionsOf(*type, motion.declarations->evaluator(), *world, loose))
+         robot::MotionsOf(*type, motion.declarations->evaluator(), *world, loose, left_out))
       add(*world, world->bodies[0], i);
   }
   return all;
@@ -134,7 +135,7 @@ bool LoadContracts(const std::vector<std::string>& files, const std::string& spe
     if (loaded.motion == nullptr || loaded.motion->declarations == nullptr ||
         session.diagnostics.has_errors())
       return false;
-    loaded.results = ContractsOf(*loaded.motion, loose);
+    loaded.results = ContractsOf(*loaded.motion, loose, &loaded.left_out);
   }
   return !session.diagnostics.has_errors();
 }

@@ -28,8 +28,10 @@ struct ContractResult {
 
 /// The contracts of the motions that choreographies use; without any, of all robot types, as far as they have
 /// controllers or dynamics and their parameters have values or ranges.
-/// `loose`: a parameter of robot types that may have any value between two bounds.
-std::vector<ContractResult> ContractsOf(Motion& motion, const robot::Loose* loose = nullptr);
+/// `loose`: a parameter of robot types that may have any value between two bounds. `left_out`: motions of
+/// robot types that cannot be looked at alone, and why.
+std::vector<ContractResult> ContractsOf(Motion& motion, const robot::Loose* loose = nullptr,
+                                        std::vector<std::string>* left_out = nullptr);
 
 /// The models that the platforms of a Koord program name, read from their files.
 struct Platforms {
@@ -46,6 +48,7 @@ struct LoadedContracts {
   std::unique_ptr<Motion> motion;
   Platforms platforms;
   std::vector<ContractResult> results;
+  std::vector<std::string> left_out;  ///< motions that cannot be looked at alone, and why
 };
 
 /// The contracts of robots and choreographies (`.rondo`), or of one Koord program. False after an error.

@@ -116,8 +116,8 @@ base::Result<reach::Judge> OfSimulator(reach::Simulator* simulator, const reach:
 }
 
 // Does the run leave a tube that was learned from others?
-reach::Judge OfTube(reach::Simulator* simulator, std::shared_ptr<const reach::SampledTube> tube, double dt,
-                    size_t steps) {
+reach::Judge OfTube(reach::Simulator* simulator, const std::shared_ptr<const reach::SampledTube>& tube,
+                    double dt, size_t steps) {
   return [=](std::span<const std::vector<double>> starts, std::span<bool> failed) {
     for (size_t i = 0; i < starts.size(); ++i) {
       const auto trace = simulator->Run(starts[i], dt, steps);

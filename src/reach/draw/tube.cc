@@ -202,8 +202,9 @@ class Picture {
   }
 
   Panel At(size_t number, Interval x, Interval y) {
-    const double column = static_cast<double>(number % kColumns);
-    const auto row = static_cast<double>(number / kColumns);
+    const size_t line = number / kColumns;
+    const auto column = static_cast<double>(number % kColumns);
+    const auto row = static_cast<double>(line);
     return {svg_, kGap + column * (kWidth + kGap), kTop + row * (kHeight + kGap) + 16, x, y};
   }
 

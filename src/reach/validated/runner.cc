@@ -122,7 +122,7 @@ bool Runner::Follow(State state) {
   while (true) {
     auto made = stages_.For(ModesOf(state));
     if (!made.ok()) return Fail(state.time, made.error().message);
-    const std::shared_ptr<const Stage> stage = made.value();
+    const std::shared_ptr<const Stage>& stage = made.value();
     SetDiscrete(*stage, state.set);
     falls_.clear();
     for (const StageClaim& claim : stage->claims) {

@@ -437,10 +437,15 @@ bool StandAlone(const RobotDef& type, Evaluator& e, World& world, const Loose* l
   return true;
 }
 
-std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World& world, const Loose* loose) {
+std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World& world, const Loose* loose,
+                                      std::vector<std::string>* left_out) {
   std::vector<MotionInstance> all;
   std::optional<TermId> parameter;
-  if (!StandAlone(type, e, world, loose, &parameter)) return all;
+  if (!StandAlone(type, e, world, loose, &parameter)) {
+    if (left_out != nullptr)
+      left_out->push_back(fmt::format("{} (a parameter of it has no value)", type.name.text));
+    return all;
+  }
   Arena& arena = e.arena();
   const Body& body = world.bodies[0];
   for (const RobotItem& item : type.items) {
@@ -456,7 +461,12 @@ std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World&
       if (p.value.valid()) continue;
       const lang::Dimension* d = lang::FindDimension(p.dimension.text);
       known = known && d != nullptr && p.least.valid() && p.most.valid();
-      if (!known) break;
+      if (!known) {
+        if (left_out != nullptr)
+          left_out->push_back(fmt::format("{}.{} (`{}` has neither a value nor a range)", type.name.text,
+                                          motion->name.text, p.name.text));
+        break;
+      }
       const TermId some = arena.Variable(arena.Declare(
           fmt::format("{}.{}.{}", type.name.text, motion->name.text, p.name.text), {}, arena.Real()));
       args[i] = Quantity(some, *d);

@@ -67,7 +67,9 @@ bool StandAlone(const RobotDef& type, Evaluator& evaluator, World& world, const 
 
 /// The motions of a robot type that can be looked at without a choreography: those whose parameters all have
 /// a value or a range. `world` becomes a world with one such robot, which the instances are about.
+/// `left_out`: the others, and why.
 std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& evaluator, World& world,
-                                      const Loose* loose = nullptr);
+                                      const Loose* loose = nullptr,
+                                      std::vector<std::string>* left_out = nullptr);
 
 }  // namespace rondo::robot
