@@ -83,10 +83,7 @@ class Run {
 
  private:
   bool Load() {
-    const bool good =
-        LoadContracts(options_.files, options_.spec, loose_ ? &*loose_ : nullptr, session_, loaded_);
-    if (!good && !session_.diagnostics.has_errors()) PrintFailure("nothing was read");
-    return good;
+    return LoadContracts(options_.files, options_.spec, loose_ ? &*loose_ : nullptr, session_, loaded_);
   }
 
   // NAME FROM..TO
