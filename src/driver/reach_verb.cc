@@ -190,7 +190,7 @@ class Run {
     r.same_as = reuse_.Covers(r);
     if (r.same_as.empty()) DecideContract(r, options, stop_);
     StoreProved(r, cache_);
-    reuse_.Remember(r);
+    if (index + 1 < loaded_.results.size()) reuse_.Remember(r);
     Keep(index);
   }
 

@@ -41,7 +41,7 @@ bool HoldsOn(const std::vector<reach::Leaf>& leaves, const reach::Problem& probl
 }  // namespace
 
 std::string TubeReuse::Covers(const ContractResult& contract) const {
-  if (!contract.impossible.empty()) return "";
+  if (!contract.impossible.empty() || tubes_.empty()) return "";
   const reach::Problem problem = reach::Centred(contract.made.problem).problem;
   const auto it = tubes_.find(TextWith(problem, {}));
   if (it == tubes_.end()) return "";

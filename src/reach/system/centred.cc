@@ -37,10 +37,11 @@ class Reader {
   void Read(TermId term, size_t state) {
     const auto at0 = At(term, state, 0);
     const auto at1 = At(term, state, 1);
-    const auto at3 = At(term, state, 3);
-    if (!at0 || !at1 || !at3) return;
+    if (!at0 || !at1) return;
     const Rational slope = *at1 - *at0;
-    if (slope == Rational(0) || !(*at3 == *at0 + slope * Rational(3))) return;
+    const auto number = [&](const Rational& value) { return arena_.Number(arena_.Real(), value); };
+    const TermId line = arena_.Add(arena_.Mul(number(slope), p_.states[state]), number(*at0));
+    if (slope == Rational(0) || arena_.Sub(term, line) != number(Rational(0))) return;
     const Rational bound = Rational(0) - *at0 / slope;
     Sides& s = sides_[state];
     if (slope > Rational(0)) {

@@ -112,32 +112,24 @@ double Trajectories::MissOf(const Compiled& compiled, std::span<const double> st
 double Trajectories::Miss(size_t c, std::span<const double> state) { return MissOf(claims_[c], state); }
 double Trajectories::MissAssumed(std::span<const double> state) { return MissOf(assumed_[0], state); }
 
-// Is there an event that happens in this state?
-bool Trajectories::Happens(std::span<const double> state) {
-  std::vector<double> next(state.size());
+// Does some event happen in this state, and change it to `next`?
+bool Trajectories::Happens(const std::vector<double>& state, std::vector<double>& next) {
+  next.resize(state.size());
   for (const Happening& e : events_) {
     if (MissOf(e.condition, state) > 0) continue;
     Evaluator after(e.after);
     after(state, next);
-    if (!std::ranges::equal(next, state)) return true;
+    if (next != state) return true;
   }
   return false;
 }
 
 // All that happens in this state, one after the other. False if there is no end to it.
 bool Trajectories::Settle(std::vector<double>& state) {
-  std::vector<double> next(state.size());
+  std::vector<double> next;
   for (int round = 0; round < 32; ++round) {
-    bool any = false;
-    for (const Happening& e : events_) {
-      if (MissOf(e.condition, state) > 0) continue;
-      Evaluator after(e.after);
-      after(state, next);
-      any = any || next != state;
-      state = next;
-      if (any) break;
-    }
-    if (!any) return true;
+    if (!Happens(state, next)) return true;
+    state = next;
   }
   return false;
 }
@@ -169,6 +161,7 @@ bool Trajectories::Run(const Course& course, double resolution,
     if (!Settle(x)) return false;
     if (!visit(0, x)) return true;
   }
+  std::vector<double> after;
   // From t to `next`.
   const auto integrate = [&](std::vector<double>& state, double from, double next) {
     auto stepper =
@@ -191,7 +184,7 @@ bool Trajectories::Run(const Course& course, double resolution,
       const double middle = from + (next - from) / 2;
       std::vector<double> there = x;
       if (middle <= from || middle >= next || !integrate(there, from, middle)) return;
-      if (Happens(there)) {
+      if (Happens(there, after)) {
         next = middle;
         end = there;
       } else {
@@ -219,7 +212,7 @@ bool Trajectories::Run(const Course& course, double resolution,
       set_inputs(t);
       std::vector<double> end_state = x;
       if (!integrate(end_state, t, next)) return false;
-      if (Happens(end_state)) {
+      if (Happens(end_state, after)) {
         locate(t, next, end_state);
         if (!visit(next, end_state)) return true;
         if (!Settle(end_state)) return false;

@@ -70,7 +70,7 @@ class Trajectories {
     Program after;
   };
   double MissOf(const Compiled& compiled, std::span<const double> state);
-  bool Happens(std::span<const double> state);
+  bool Happens(const std::vector<double>& state, std::vector<double>& next);
   bool Settle(std::vector<double>& state);
 
   const Problem* problem_ = nullptr;

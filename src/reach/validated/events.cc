@@ -69,7 +69,7 @@ bool Runner::Happened(State& state, const Stage& stage, Map& observe) {
       if (stage.modes[guard.mode] != p.mode) continue;
       const Truth truth = guard.formula.Check([&](size_t atom) { return observe.Range(guard.first + atom); });
       if (truth != Truth::kFalse) add({guard.after, {}});
-      stays = stays && !(truth == Truth::kTrue && Strictly(guard, observe));
+      stays = stays && !Strictly(guard, observe);
     }
     if (stays) add(p);
   }

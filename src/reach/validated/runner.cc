@@ -292,7 +292,7 @@ Runner::Next Runner::SplitAt(const State& state, size_t symbol) {
 }
 
 void Runner::Keep(const Stage& stage, double from, double to, const interval::Box& during) {
-  if (!options_.keep_tube) return;
+  if (!options_.keep_tube || !claims_) return;
   interval::Box box(during.begin(), during.begin() + static_cast<std::ptrdiff_t>(box_.size()));
   for (size_t i = 0; i < box.size(); ++i) {
     if (stage.discrete[i]) box[i] = *stage.discrete[i];
