@@ -189,6 +189,7 @@ class Run {
     // The same motion elsewhere, or of another robot of the same type, is proved already.
     r.same_as = reuse_.Covers(r);
     if (r.same_as.empty()) DecideContract(r, options, stop_);
+    CertifyContract(r, options_.jobs, stop_);
     StoreProved(r, cache_);
     if (index + 1 < loaded_.results.size()) reuse_.Remember(r);
     Keep(index);

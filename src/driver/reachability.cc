@@ -161,6 +161,25 @@ void DecideContract(ContractResult& r, const DecideOptions& options, const base:
   }
 }
 
+reach::certify::Certificate CertificateOf(const reach::Proved& proved) {
+  reach::certify::Certificate certificate;
+  for (const reach::Leaf& leaf : proved.leaves) {
+    auto& part = certificate.parts.emplace_back();
+    part.initial = leaf.initial;
+    for (const auto& [length, degree] : leaf.steps) part.steps.push_back({length, degree});
+  }
+  for (const interval::Box& box : proved.empty) certificate.parts.push_back({box, {}});
+  return certificate;
+}
+
+void CertifyContract(ContractResult& r, unsigned jobs, const base::StopToken& stop) {
+  const auto* proved = r.outcome ? std::get_if<reach::Proved>(&*r.outcome) : nullptr;
+  if (proved == nullptr || stop.cancelled()) return;
+  const auto begin = std::chrono::steady_clock::now();
+  r.certified = reach::certify::Check(r.made.problem, CertificateOf(*proved), jobs, stop);
+  r.certify_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
 std::string_view VerdictOf(const ContractResult& r) {
   if (!r.impossible.empty()) return "unknown";
   if (!r.same_as.empty()) return "proved";
@@ -219,7 +238,11 @@ std::string ContractTable(const std::vector<ContractResult>& results) {
       if (const auto* proved = std::get_if<reach::Proved>(&*r.outcome))
         parts = fmt::format("{}", proved->leaves.size());
     }
-    const std::string note = r.same_as.empty() ? "" : fmt::format(" (as {})", r.same_as);
+    std::string note = r.same_as.empty() ? "" : fmt::format(" (as {})", r.same_as);
+    if (r.certified)
+      note +=
+          fmt::format(" [{} {:.3f} s, {} steps]", r.certified->accepted ? "certified" : r.certified->reason,
+                      r.certify_seconds, r.certified->steps);
     text += fmt::format("{:<9} {:>9} {:>6}  {}{}\n", VerdictOf(r), fmt::format("{:.3f} s", r.seconds), parts,
                         ProblemOf(r).name, note);
   }

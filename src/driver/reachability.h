@@ -7,6 +7,7 @@
 #include "diag/diagnostic.h"
 #include "driver/koord_load.h"
 #include "driver/motion.h"
+#include "reach/certify/checker.h"
 #include "reach/validated/prover.h"
 #include "robot/reach/motion_problem.h"
 
@@ -19,6 +20,8 @@ struct ContractResult {
   std::string impossible;                 ///< why there is no problem to decide, if there is none
   std::optional<reach::Outcome> outcome;  ///< nothing: not begun
   double seconds = 0;
+  std::optional<reach::certify::Verdict> certified;  ///< of a proof, by the checker; nothing: not asked
+  double certify_seconds = 0;
   std::vector<std::string> domain;       ///< what else a proof is limited to
   const choreo::Graph* graph = nullptr;  ///< of a choreography's motion
   std::string motion;                    ///< `Type.Motion`
@@ -63,6 +66,11 @@ struct DecideOptions {
   std::function<void(size_t, size_t)> progress;
 };
 void DecideContract(ContractResult& result, const DecideOptions& options, const base::StopToken& stop);
+
+/// What the proof leaves to be checked.
+reach::certify::Certificate CertificateOf(const reach::Proved& proved);
+/// Has the proof, if there is one, checked by other means.
+void CertifyContract(ContractResult& result, unsigned jobs, const base::StopToken& stop);
 
 int StatusOf(const ContractResult& result);
 std::string_view VerdictOf(const ContractResult& result);

@@ -65,7 +65,11 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
       if (a.proved) {
         ++done;
         proved.steps += a.leaf.steps.size();
-        if (!a.vacuous) proved.leaves.push_back(std::move(a.leaf));
+        if (a.vacuous) {
+          proved.empty.push_back(std::move(open[i]));
+        } else {
+          proved.leaves.push_back(std::move(a.leaf));
+        }
         continue;
       }
       reason = a.time > 0 ? fmt::format("{}, at {:.4g} s", a.reason, a.time) : a.reason;

@@ -28,6 +28,7 @@ struct Leaf {
 
 struct Proved {
   std::vector<Leaf> leaves;
+  std::vector<interval::Box> empty;  ///< parts in which nothing satisfies what is assumed
   size_t steps = 0;
 };
 

@@ -17,7 +17,7 @@ void Propagate(std::span<const Interval> rates, size_t dimension, double h, Tran
       size(i, j) = std::fmax(std::fabs(a.lo), std::fabs(a.hi));
     }
   }
-  const double norm = Above(size.rowwise().sum().maxCoeff());
+  const double norm = n == 0 ? 0 : Above(size.rowwise().sum().maxCoeff());
   // h = t * 2^squarings, exactly.
   int squarings = 0;
   double t = h;

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+namespace rondo::reach::certify {
+
+/// The monomials up to a degree, in symbols that range over [-1, 1]. Number 0 is the constant 1, number i + 1
+/// is symbol i; those of a lower degree come first, in an order that does not depend on the highest.
+class Basis {
+ public:
+  struct Pair {
+    uint32_t left, right;
+  };
+
+  Basis(size_t symbols, size_t degree);
+
+  size_t degree() const { return degree_; }
+  size_t size() const { return degree_of_.size(); }
+  size_t DegreeOf(size_t monomial) const { return degree_of_[monomial]; }
+  /// Are all exponents even? Then it is never negative.
+  bool IsEven(size_t monomial) const { return even_[monomial] != 0; }
+  /// By symbol.
+  std::span<const uint32_t> Exponents(size_t monomial) const {
+    return std::span(exponents_).subspan(monomial * symbols_, symbols_);
+  }
+  /// All ordered pairs whose product is this monomial.
+  std::span<const Pair> Pairs(size_t monomial) const {
+    return std::span(pairs_).subspan(begin_[monomial], begin_[monomial + 1] - begin_[monomial]);
+  }
+  /// The largest number of pairs with one product.
+  size_t most_pairs() const { return most_pairs_; }
+
+ private:
+  size_t symbols_, degree_;
+  std::vector<uint32_t> exponents_;
+  std::vector<uint8_t> degree_of_, even_;
+  std::vector<size_t> begin_;
+  std::vector<Pair> pairs_;
+  size_t most_pairs_ = 1;
+};
+
+/// Every basis once. Safe for several threads.
+class Bases {
+ public:
+  std::shared_ptr<const Basis> Of(size_t symbols, size_t degree);
+
+ private:
+  std::mutex mutex_;
+  std::map<std::pair<size_t, size_t>, std::shared_ptr<const Basis>> known_;
+};
+
+}  // namespace rondo::reach::certify

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/stop.h"
+#include "reach/system/problem.h"
+
+/// The independent checker of reachability proofs. It shares with the engine that finds them what a problem
+/// is and means (`reach/system`) and interval arithmetic (`interval`), nothing else.
+namespace rondo::reach::certify {
+
+/// How one part of the initial set was followed.
+struct PartRecord {
+  struct Step {
+    double length;  ///< seconds
+    size_t degree;  ///< of polynomials in the initial state
+  };
+  interval::Box initial;
+  std::vector<Step> steps;  ///< none if nothing in the part satisfies what is assumed
+};
+
+/// What a proof of a problem leaves behind. Nothing in it is believed: parts must cover the initial set, and
+/// steps are what is tried first.
+struct Certificate {
+  std::vector<PartRecord> parts;
+};
+
+struct Verdict {
+  bool accepted = false;
+  std::string reason;  ///< why not
+  size_t steps = 0;
+};
+
+/// Shows again that every claim of the problem holds on every course that begins in the initial set.
+///
+/// Each step is shown after the fact: a polynomial in the initial state and time is found in any way, and
+/// bounded is by how much it fails to solve the differential equation (its defect), and how errors grow.
+/// Guarantee: what is accepted holds. Cost: some times that of the proof.
+Verdict Check(const Problem& problem, const Certificate& certificate, unsigned jobs,
+              const base::StopToken& stop);
+
+}  // namespace rondo::reach::certify

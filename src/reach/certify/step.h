@@ -1,0 +1,57 @@
+#pragma once
+
+#include "reach/certify/errors.h"
+#include "reach/certify/evaluate.h"
+#include "reach/certify/reach_set.h"
+
+namespace rondo::reach::certify {
+
+/// x' = f(x, w) with inputs w that may change at any time. Variables of the program: states, then inputs;
+/// outputs: the derivatives.
+struct Dynamics {
+  Program rates;
+  size_t states = 0;
+  interval::Box inputs;
+};
+
+/// One step of the flow, shown after the fact: any polynomial p(s, t) will do; what it leaves of the equation
+/// (its defect, p' - f(p)) and how errors grow is bounded.
+///
+/// Nothing here is shared with `reach/validated`, which bounds the rest of a Taylor series.
+/// @source Corliss & Rihm, Validating an a priori enclosure using high-order Taylor series (1996), for the
+/// enclosure; the defect as in Eble & Neher, ACETAF (2003).
+class Step {
+ public:
+  /// @param order  of p in time.
+  Step(const Dynamics& dynamics, size_t order);
+
+  /// Follows all of the set for `h` seconds. False if that cannot be shown.
+  bool Take(const ReachSet& set, double h);
+
+  /// Models of the states and inputs during the step, errors included. Time runs from 0 to 1.
+  const std::vector<Model>& during() const { return during_; }
+  const Algebra& algebra() const { return *algebra_; }
+  /// Encloses states and inputs during the step.
+  const interval::Box& region() const { return region_; }
+  /// Encloses the derivatives during the step, per second.
+  const interval::Box& rates() const { return rates_; }
+  const ReachSet& end() const { return end_; }
+
+ private:
+  bool Nominal(const ReachSet& set, double h, const OnBox& on);
+  bool Defect(double h, const OnBox& on);
+  bool Bound(const ReachSet& set, double h, const OnBox& on, ErrorFlow& flow) const;
+  interval::Box Ranges() const;
+
+  const Dynamics& dynamics_;
+  size_t order_;
+  bool kinks_;
+  std::optional<Algebra> algebra_;
+  std::vector<Model> during_;
+  interval::Box region_, rates_;
+  Push push_;
+  Nearby nearby_;
+  ReachSet end_;
+};
+
+}  // namespace rondo::reach::certify
