@@ -9,6 +9,7 @@
 #include "driver/load.h"
 #include "driver/script_run.h"
 #include "driver/terminal.h"
+#include "driver/tube_certificate.h"
 #include "driver/verbs.h"
 #include "solve/certify/checker.h"
 
@@ -20,6 +21,29 @@ struct Options {
   std::string script;
   bool json = false;
 };
+
+// A certificate of `rondo reach`. What is wrong with it is reported.
+reach::certify::Verdict Tube(const std::string& path, diag::FileId file, Session& session,
+                             const base::StopToken& stop) {
+  // No place: such a file is one long line.
+  const auto reject = [&](const std::string& message) -> diag::Diagnostic& {
+    return session.diagnostics.Report(diag::Kind::kCertificateRejected, {},
+                                      fmt::format("`{}`: {}", path, message));
+  };
+  const auto tube = ReadTube(session.sources.text(file));
+  if (!tube.ok()) {
+    reject(tube.error().message);
+    return {};
+  }
+  auto verdict = CheckTube(tube.value(), session, stop);
+  if (!verdict.ok()) {
+    reject(verdict.error().message);
+    return {};
+  }
+  if (!verdict.value().accepted && !stop.cancelled())
+    reject(fmt::format("it does not show `{}`", tube.value().contract)).Note(verdict.value().reason);
+  return verdict.value();
+}
 
 int Run(const Options& options) {
   Session session;
@@ -42,6 +66,19 @@ int Run(const Options& options) {
     readable = readable && file;
     if (!file) continue;
     const size_t before = session.diagnostics.errors();
+    if (IsTube(session.sources.text(*file))) {
+      if (!options.script.empty()) {
+        session.diagnostics.Report(diag::Kind::kCertificateRejected, {*file, 0, 1},
+                                   "a certificate of a contract is about no script");
+        continue;
+      }
+      const auto verdict = Tube(path, *file, session, stop);
+      stopped = stopped || stop.cancelled();
+      list.push_back({{"file", path}, {"accepted", verdict.accepted}, {"steps", verdict.steps}});
+      if (verdict.accepted)
+        text += fmt::format("{}: accepted: the contract holds ({} steps)\n", path, verdict.steps);
+      continue;
+    }
     solve::certify::Certificate certificate;
     solve::certify::ReadCertificate(session.sources, *file, certificate, session.diagnostics);
     solve::certify::Tally tally;
@@ -85,13 +122,18 @@ int Run(const Options& options) {
 
 void AddCertifyVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("certify", "check refutations that `rondo solve --cert` wrote");
-  verb->add_option("FILE", options->files, "certificates: a script and its refutation")->required();
+  CLI::App* verb = app.add_subcommand(
+      "certify", "check certificates: of `rondo solve --cert`, `rondo prove` and `rondo reach`");
+  verb->add_option("FILE", options->files,
+                   "certificates: a script and its refutation, or a contract and how it was proved")
+      ->required();
   verb->add_option("--of", options->script, "the script that the certificate should be about");
   verb->add_flag("--json", options->json, "the result as JSON on standard output");
   verb->footer(
       "example: rondo solve --cert it.cert examples/smt/rectangles.smt2\n"
-      "         rondo certify --of examples/smt/rectangles.smt2 it.cert\n\n"
+      "         rondo certify --of examples/smt/rectangles.smt2 it.cert\n"
+      "         rondo reach examples/reach/van_der_pol.rondo --certificates proofs\n"
+      "         rondo certify proofs/*.tube.json\n\n"
       "The checker shares no code with the search: it has normal forms and interval arithmetic (MPFR) of its "
       "own.\n"
       "exit status: 0 every certificate is accepted, 1 one is not, 3 interrupted");

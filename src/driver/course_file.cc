@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "driver/contract_file.h"
 
 namespace rondo::driver {
 
@@ -15,41 +15,25 @@ namespace {
 
 constexpr const char* kFormat = "rondo-course/1";
 
-std::string Absolute(const std::string& file) {
-  std::error_code ignored;
-  return file.empty() ? file : std::filesystem::absolute(file, ignored).lexically_normal().string();
-}
-
 }  // namespace
 
 base::Result<bool> SaveCourse(const std::string& path, const CourseFile& file) {
-  nlohmann::json files = nlohmann::json::array();
-  for (const std::string& f : file.files) files.push_back(Absolute(f));
-  const nlohmann::json json{{"format", kFormat},
-                            {"files", files},
-                            {"spec", Absolute(file.spec)},
-                            {"contract", file.contract},
-                            {"breaks", file.claim},
-                            {"time", file.time},
-                            {"start", file.course.start},
-                            {"inputs", file.course.inputs},
-                            {"input_period", file.course.input_period}};
+  nlohmann::json json = ContractToJson(kFormat, {file.files, file.spec, file.contract});
+  json["breaks"] = file.claim;
+  json["time"] = file.time;
+  json["start"] = file.course.start;
+  json["inputs"] = file.course.inputs;
+  json["input_period"] = file.course.input_period;
   return base::WriteFileAtomically(path,
                                    json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
-bool IsCourse(std::string_view text) {
-  const auto json = nlohmann::json::parse(text, nullptr, false);
-  return json.is_object() && json.value("format", nlohmann::json()) == kFormat;
-}
+bool IsCourse(std::string_view text) { return HasFormat(text, kFormat); }
 
 base::Result<CourseFile> ReadCourse(std::string_view text) {
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object()) return base::Error{"this is not JSON"};
   CourseFile file;
-  const auto text_at = [&](const char* key) {
-    return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : std::string();
-  };
   const auto numbers = [](const nlohmann::json& list, std::vector<double>& out) {
     if (!list.is_array()) return false;
     for (const auto& x : list) {
@@ -63,32 +47,26 @@ base::Result<CourseFile> ReadCourse(std::string_view text) {
     out = json[key].get<double>();
     return std::isfinite(out);
   };
-  file.spec = text_at("spec");
-  file.contract = text_at("contract");
-  file.claim = text_at("breaks");
-  bool good = json.contains("files") && json["files"].is_array() && !json["files"].empty() &&
-              number_at("time", file.time) && number_at("input_period", file.course.input_period) &&
-              file.course.input_period > 0 && json.contains("start") &&
-              numbers(json["start"], file.course.start) && json.contains("inputs") &&
-              json["inputs"].is_array();
-  for (const auto& f : good ? json["files"] : nlohmann::json::array()) {
-    good = good && f.is_string();
-    if (good) file.files.push_back(f.get<std::string>());
-  }
+  const auto name = ContractFromJson(json);
+  bool good = name && json.contains("breaks") && json["breaks"].is_string() && number_at("time", file.time) &&
+              number_at("input_period", file.course.input_period) && file.course.input_period > 0 &&
+              json.contains("start") && numbers(json["start"], file.course.start) &&
+              json.contains("inputs") && json["inputs"].is_array();
   for (const auto& slot : good ? json["inputs"] : nlohmann::json::array())
     good = good && numbers(slot, file.course.inputs.emplace_back());
   if (!good) return base::Error{"the run is not complete"};
+  file.files = name->files;
+  file.spec = name->spec;
+  file.contract = name->contract;
+  file.claim = json["breaks"].get<std::string>();
   return file;
 }
 
 base::Result<std::string> ReplayCourse(const CourseFile& file, Session& session) {
   LoadedContracts loaded;
-  if (!LoadContracts(file.files, file.spec, nullptr, session, loaded))
-    return base::Error{fmt::format("`{}` cannot be used", file.files[0])};
-  const auto it = std::ranges::find(loaded.results, file.contract,
-                                    [](const ContractResult& r) { return r.made.problem.name; });
-  if (it == loaded.results.end() || !it->impossible.empty())
-    return base::Error{fmt::format("there is no contract `{}` any more", file.contract)};
+  const auto found = FindContract({file.files, file.spec, file.contract}, session, loaded);
+  if (!found.ok()) return found.error();
+  const ContractResult* it = found.value();
   const reach::Problem& problem = it->made.problem;
   const auto claim = std::ranges::find(problem.claims, file.claim, &reach::Claim::name);
   bool fits = claim != problem.claims.end() && file.course.start.size() == problem.states.size();

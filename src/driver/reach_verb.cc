@@ -15,6 +15,7 @@
 #include "driver/statistical.h"
 #include "driver/sweep.h"
 #include "driver/terminal.h"
+#include "driver/tube_certificate.h"
 #include "driver/tube_reuse.h"
 #include "driver/verbs.h"
 #include "reach/draw/tube.h"
@@ -33,7 +34,8 @@ struct Options {
   StatisticalOptions sampling;
   std::vector<std::string> sweep;  ///< the parameter, its range
   size_t parts = 64;
-  std::string svg, save;
+  std::string svg, save, certificates;
+  bool no_certify = false;
   bool no_cache = false;
   bool json = false;
 };
@@ -74,6 +76,7 @@ class Run {
       const int own = StatusOf(r);
       if (own == kRejected || (own == kUndecided && status == kEstablished)) status = own;
     }
+    if (unwritten_) status = kRejected;
     status = Finish(status);
     for (const auto& [path, svg] : pictures_) {
       if (WritePicture(path, svg, options_.json) != kEstablished) status = kRejected;
@@ -117,7 +120,7 @@ class Run {
         // What is known of it is known for less: a part of its own range.
         interval::Interval& side = r.made.problem.initial[static_cast<size_t>(it - r.made.names.begin())];
         side = interval::Meet(side, {loose_->least.ToDouble(), loose_->most.ToDouble()});
-        DecideOptions options{options_.timeout, options_.jobs, options_.seed, {}};
+        DecideOptions options{options_.timeout, options_.jobs, options_.seed, !options_.no_certify, {}};
         options.progress = [&](size_t parts, size_t) {
           line.Show(fmt::format("{}: {} parts of the range", r.made.problem.name, parts));
         };
@@ -180,19 +183,44 @@ class Run {
   void Decide(size_t index, ProgressLine& line) {
     ContractResult& r = loaded_.results[index];
     const std::string& name = r.made.problem.name;
-    DecideOptions options{options_.timeout, options_.jobs, options_.seed, {}};
+    DecideOptions options{options_.timeout, options_.jobs, options_.seed, !options_.no_certify, {}};
     options.progress = [&](size_t done, size_t open) {
       line.Show(fmt::format("[{}/{}] {}: {} parts proved, {} open", index + 1, loaded_.results.size(), name,
                             done, open));
     };
     line.Show(fmt::format("[{}/{}] {}", index + 1, loaded_.results.size(), name));
     // The same motion elsewhere, or of another robot of the same type, is proved already.
-    r.same_as = reuse_.Covers(r);
+    reach::certify::Certificate certificate;
+    r.same_as = reuse_.Covers(r, certificate);
     if (r.same_as.empty()) DecideContract(r, options, stop_);
-    CertifyContract(r, options_.jobs, stop_);
+    if (r.outcome && std::holds_alternative<reach::Proved>(*r.outcome))
+      certificate = CertificateOf(std::get<reach::Proved>(*r.outcome));
+    if (VerdictOf(r) == "proved" && !options_.no_certify && !stop_.cancelled()) {
+      line.Show(fmt::format("[{}/{}] {}: certifying", index + 1, loaded_.results.size(), name));
+      CertifyContract(r, certificate, options_.jobs, stop_);
+      if (r.IsCertified() && !options_.certificates.empty()) SaveCertificate(index, std::move(certificate));
+    }
     StoreProved(r, cache_);
     if (index + 1 < loaded_.results.size()) reuse_.Remember(r);
     Keep(index);
+  }
+
+  void SaveCertificate(size_t index, reach::certify::Certificate certificate) {
+    const ContractResult& r = loaded_.results[index];
+    std::filesystem::path path =
+        std::filesystem::path(options_.certificates) / (FileName(r.made.problem.name) + ".tube.json");
+    if (std::ranges::find(certificates_, path.string()) != certificates_.end())
+      path.replace_filename(fmt::format("{}-{}.tube.json", FileName(r.made.problem.name), index + 1));
+    std::error_code ignored;
+    std::filesystem::create_directories(path.parent_path(), ignored);
+    const auto written =
+        SaveTube(path.string(), {options_.files, options_.spec, r.made.problem.name, std::move(certificate)});
+    if (written.ok()) {
+      certificates_.push_back(path.string());
+    } else {
+      unwritten_ = true;
+      PrintFailure(fmt::format("cannot write `{}`: {}", path.string(), written.error().message));
+    }
   }
 
   // Samples establish nothing: a failure refutes, anything else stays open.
@@ -230,6 +258,7 @@ class Run {
                  {"status", status},
                  {"contracts", list},
                  {"runs", saved_},
+                 {"certificates", certificates_},
                  {"left_out", loaded_.left_out},
                  {"diagnostics", DiagnosticsToJson(session_.sources, session_.diagnostics)}});
       return status;
@@ -242,19 +271,26 @@ class Run {
     }
     if (!loaded_.results.empty()) {
       size_t proved = 0;
+      size_t certified = 0;
       std::set<std::string> assumed;
       for (const ContractResult& r : loaded_.results) {
         if (VerdictOf(r) != "proved") continue;
         ++proved;
+        certified += r.IsCertified() ? 1 : 0;
         if (!r.model.empty())
           Print(fmt::format("{}: proved of `{}`, for {}\n", r.made.problem.name, r.model,
                             fmt::join(r.domain, "; ")));
         assumed.insert(r.made.assumed.begin(), r.made.assumed.end());
       }
       if (!assumed.empty()) Print(fmt::format("assumed: {}\n", fmt::join(assumed, "; ")));
-      Print(fmt::format("{} of {} contract{} proved\n", proved, loaded_.results.size(),
-                        loaded_.results.size() == 1 ? "" : "s"));
+      const bool all = certified == proved && proved > 0;
+      Print(fmt::format("{} of {} contract{} proved{}\n", proved, loaded_.results.size(),
+                        loaded_.results.size() == 1 ? "" : "s", all ? " and certified" : ""));
+      if (!all && proved > 0 && !options_.no_certify)
+        Print(fmt::format("certified: {} of {} proofs\n", certified, proved));
     }
+    for (const std::string& path : certificates_)
+      Print(fmt::format("a certificate is in {}: `rondo certify {}`\n", path, path));
     for (const std::string& path : saved_)
       Print(fmt::format("the run is in {}: `rondo replay {}`\n", path, path));
     if (status != kEstablished) Print(fmt::format("exit {}\n", status));
@@ -269,7 +305,8 @@ class Run {
   LoadedContracts loaded_;
   std::optional<robot::Loose> loose_;
   TubeReuse reuse_;
-  std::vector<std::string> saved_;
+  std::vector<std::string> saved_, certificates_;
+  bool unwritten_ = false;
   std::vector<std::pair<std::string, std::string>> pictures_;
 };
 
@@ -311,6 +348,10 @@ void AddReachVerb(CLI::App& app, int& status) {
                    "of --statistical: judge a tube that is learned from a few runs, as Verse learns it "
                    "(`compat`) or with corners and slack (`careful`)")
       ->check(CLI::IsMember({"compat", "careful"}));
+  verb->add_option("--certificates", options->certificates,
+                   "write the certificate of every proof into this folder, for `rondo certify`");
+  verb->add_flag("--no-certify", options->no_certify,
+                 "do not have proofs checked by the independent checker");
   verb->add_flag("--no-cache", options->no_cache, "do not remember for `rondo prove` what is proved");
   verb->add_flag("--json", options->json, "the result as JSON on standard output");
   verb->footer(

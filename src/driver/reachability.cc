@@ -161,25 +161,6 @@ void DecideContract(ContractResult& r, const DecideOptions& options, const base:
   }
 }
 
-reach::certify::Certificate CertificateOf(const reach::Proved& proved) {
-  reach::certify::Certificate certificate;
-  for (const reach::Leaf& leaf : proved.leaves) {
-    auto& part = certificate.parts.emplace_back();
-    part.initial = leaf.initial;
-    for (const auto& [length, degree] : leaf.steps) part.steps.push_back({length, degree});
-  }
-  for (const interval::Box& box : proved.empty) certificate.parts.push_back({box, {}});
-  return certificate;
-}
-
-void CertifyContract(ContractResult& r, unsigned jobs, const base::StopToken& stop) {
-  const auto* proved = r.outcome ? std::get_if<reach::Proved>(&*r.outcome) : nullptr;
-  if (proved == nullptr || stop.cancelled()) return;
-  const auto begin = std::chrono::steady_clock::now();
-  r.certified = reach::certify::Check(r.made.problem, CertificateOf(*proved), jobs, stop);
-  r.certify_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
 std::string_view VerdictOf(const ContractResult& r) {
   if (!r.impossible.empty()) return "unknown";
   if (!r.same_as.empty()) return "proved";
@@ -231,22 +212,25 @@ void ReportContract(const ContractResult& r, diag::Diagnostics& diagnostics) {
 }
 
 std::string ContractTable(const std::vector<ContractResult>& results) {
-  std::string text = fmt::format("{:<9} {:>9} {:>6}  {}\n", "verdict", "time", "parts", "contract");
+  std::string text =
+      fmt::format("{:<9} {:>9} {:>9} {:>6}  {}\n", "verdict", "time", "certified", "parts", "contract");
+  std::string rejected;
   for (const ContractResult& r : results) {
     std::string parts;
     if (r.outcome) {
       if (const auto* proved = std::get_if<reach::Proved>(&*r.outcome))
         parts = fmt::format("{}", proved->leaves.size());
     }
-    std::string note = r.same_as.empty() ? "" : fmt::format(" (as {})", r.same_as);
-    if (r.certified)
-      note +=
-          fmt::format(" [{} {:.3f} s, {} steps]", r.certified->accepted ? "certified" : r.certified->reason,
-                      r.certify_seconds, r.certified->steps);
-    text += fmt::format("{:<9} {:>9} {:>6}  {}{}\n", VerdictOf(r), fmt::format("{:.3f} s", r.seconds), parts,
-                        ProblemOf(r).name, note);
+    const std::string note = r.same_as.empty() ? "" : fmt::format(" (as {})", r.same_as);
+    const std::string certified = r.IsCertified() ? fmt::format("{:.3f} s", r.certify_seconds)
+                                  : r.certified   ? "no"
+                                                  : "";
+    text += fmt::format("{:<9} {:>9} {:>9} {:>6}  {}{}\n", VerdictOf(r), fmt::format("{:.3f} s", r.seconds),
+                        certified, parts, ProblemOf(r).name, note);
+    if (r.certified && !r.IsCertified())
+      rejected += fmt::format("not certified: {}: {}\n", ProblemOf(r).name, r.certified->reason);
   }
-  return text;
+  return text + rejected;
 }
 
 nlohmann::json ToJson(const ContractResult& r) {
@@ -256,6 +240,11 @@ nlohmann::json ToJson(const ContractResult& r) {
   if (!r.domain.empty()) out["domain"] = r.domain;
   if (!r.model.empty()) out["model"] = r.model;
   if (!r.same_as.empty()) out["same_as"] = r.same_as;
+  if (r.certified) {
+    out["certified"] = r.certified->accepted;
+    out["certify_seconds"] = r.certify_seconds;
+    if (!r.certified->accepted) out["not_certified"] = r.certified->reason;
+  }
   if (!r.outcome) return out;
   if (const auto* proved = std::get_if<reach::Proved>(&*r.outcome)) {
     out["parts"] = proved->leaves.size();

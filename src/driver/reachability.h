@@ -22,6 +22,8 @@ struct ContractResult {
   double seconds = 0;
   std::optional<reach::certify::Verdict> certified;  ///< of a proof, by the checker; nothing: not asked
   double certify_seconds = 0;
+
+  bool IsCertified() const { return certified && certified->accepted; }
   std::vector<std::string> domain;       ///< what else a proof is limited to
   const choreo::Graph* graph = nullptr;  ///< of a choreography's motion
   std::string motion;                    ///< `Type.Motion`
@@ -63,14 +65,10 @@ struct DecideOptions {
   double timeout = 60;
   unsigned jobs = 0;
   uint64_t seed = 1;
+  bool certify = true;  ///< of sweeps: have what is proved checked
   std::function<void(size_t, size_t)> progress;
 };
 void DecideContract(ContractResult& result, const DecideOptions& options, const base::StopToken& stop);
-
-/// What the proof leaves to be checked.
-reach::certify::Certificate CertificateOf(const reach::Proved& proved);
-/// Has the proof, if there is one, checked by other means.
-void CertifyContract(ContractResult& result, unsigned jobs, const base::StopToken& stop);
 
 int StatusOf(const ContractResult& result);
 std::string_view VerdictOf(const ContractResult& result);

@@ -10,12 +10,16 @@
 
 namespace rondo::driver {
 
-std::string DefaultRunFile(const std::string& program, const std::string& property) {
-  const std::filesystem::path folder = solve::cache::ProofCache::DefaultFolder().parent_path() / "runs";
-  std::string name = std::filesystem::path(program).stem().string() + "-" + property;
-  for (char& c : name) {
+std::string FileName(std::string text) {
+  for (char& c : text) {
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
   }
+  return text;
+}
+
+std::string DefaultRunFile(const std::string& program, const std::string& property) {
+  const std::filesystem::path folder = solve::cache::ProofCache::DefaultFolder().parent_path() / "runs";
+  const std::string name = FileName(std::filesystem::path(program).stem().string() + "-" + property);
   return (folder / (name + ".json")).string();
 }
 

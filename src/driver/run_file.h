@@ -26,6 +26,8 @@ void AdoptParameters(const RunFile& run, const koord::Model& model, koord::seman
 /// The reverse, into the file.
 void KeepParameters(RunFile& run, const koord::Model& model, const koord::semantics::TeamOptions& options);
 
+/// The text as the name of a file: letters, digits, `-` and `_`.
+std::string FileName(std::string text);
 /// Where runs go unless the user says where: a folder for cached data.
 std::string DefaultRunFile(const std::string& program, const std::string& property);
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "driver/exit_status.h"
+#include "driver/tube_certificate.h"
 
 namespace rondo::driver {
 
@@ -15,11 +16,16 @@ namespace {
 class Sweeper {
  public:
   Sweeper(const ContractResult& contract, size_t state, const DecideOptions& options,
-          const base::StopToken& stop, double shortest)
-      : problem_(contract.made.problem), state_(state), options_(options), stop_(stop), shortest_(shortest) {}
+          const base::StopToken& stop, const base::StopToken& cancelled, double shortest)
+      : problem_(contract.made.problem),
+        state_(state),
+        options_(options),
+        stop_(stop),
+        cancelled_(cancelled),
+        shortest_(shortest) {}
 
   void Run(interval::Interval range) {
-    SweepPart part{range.lo, range.hi, "unknown", 0, ""};
+    SweepPart part{range.lo, range.hi, "unknown", 0, "", false};
     const double middle = range.Middle();
     const bool last = range.Width() <= shortest_ * 1.5 || middle <= range.lo || middle >= range.hi;
     if (!stop_.StopRequested()) Decide(part, last);
@@ -51,7 +57,13 @@ class Sweeper {
     const auto outcome = reach::Decide(problem, prover, stop_);
     if (options_.progress) options_.progress(parts.size(), 1);
     if (!outcome.ok()) return;
-    if (std::holds_alternative<reach::Proved>(outcome.value())) part.verdict = "proved";
+    if (const auto* proved = std::get_if<reach::Proved>(&outcome.value())) {
+      part.verdict = "proved";
+      // What is proved in time is certified, even if time is over by then.
+      part.certified =
+          options_.certify &&
+          reach::certify::Check(problem, CertificateOf(*proved), options_.jobs, cancelled_).accepted;
+    }
     if (const auto* refuted = std::get_if<reach::Refuted>(&outcome.value())) {
       part.verdict = "refuted";
       part.counterexample = refuted->course.start[state_];
@@ -60,7 +72,7 @@ class Sweeper {
   }
 
   void Add(SweepPart part) {
-    if (!parts.empty() && parts.back().verdict == part.verdict) {
+    if (!parts.empty() && parts.back().verdict == part.verdict && parts.back().certified == part.certified) {
       parts.back().to = part.to;
     } else {
       parts.push_back(std::move(part));
@@ -71,6 +83,7 @@ class Sweeper {
   size_t state_;
   const DecideOptions& options_;
   const base::StopToken& stop_;
+  const base::StopToken& cancelled_;  ///< without a limit of time
   double shortest_;
 };
 
@@ -91,7 +104,7 @@ Sweep SweepContract(const ContractResult& contract, const std::string& parameter
   const base::StopToken limited =
       stop.WithDeadline(std::chrono::steady_clock::now() +
                         std::chrono::milliseconds(static_cast<int64_t>(options.timeout * 1000)));
-  Sweeper sweeper(contract, state, options, limited, range.Width() / static_cast<double>(parts));
+  Sweeper sweeper(contract, state, options, limited, stop, range.Width() / static_cast<double>(parts));
   sweeper.Run(range);
   sweep.parts = std::move(sweeper.parts);
   return sweep;
@@ -102,6 +115,7 @@ std::string ToText(const Sweep& sweep) {
   std::string text = fmt::format("{}\n", sweep.contract);
   for (const SweepPart& part : sweep.parts) {
     text += fmt::format("  {} in [{:.6g}, {:.6g}]  {}", sweep.parameter, part.from, part.to, part.verdict);
+    if (part.certified) text += " and certified";
     if (part.verdict == "refuted")
       text += fmt::format(", for example {:.6g}: `{}`", part.counterexample, part.claim);
     text += '\n';
@@ -115,6 +129,7 @@ nlohmann::json ToJson(const Sweep& sweep) {
   nlohmann::json list = nlohmann::json::array();
   for (const SweepPart& part : sweep.parts) {
     nlohmann::json one{{"from", part.from}, {"to", part.to}, {"verdict", part.verdict}};
+    if (part.verdict == "proved") one["certified"] = part.certified;
     if (part.verdict == "refuted") {
       one["counterexample"] = part.counterexample;
       one["claim"] = part.claim;

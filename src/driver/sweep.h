@@ -15,12 +15,13 @@ struct SweepPart {
   std::string verdict;        ///< proved (for every value), refuted (for one of them), unknown
   double counterexample = 0;  ///< the value of a trajectory that breaks the contract, if refuted
   std::string claim;          ///< that fails
+  bool certified = false;     ///< of a proof: for all of the part
 };
 
 struct Sweep {
   std::string contract, parameter;
   std::string trouble;           ///< why there is no answer, if there is none
-  std::vector<SweepPart> parts;  ///< ascending; neighbours differ in their verdict
+  std::vector<SweepPart> parts;  ///< ascending; neighbours differ in their verdict, or in being certified
 };
 
 /// @param parts  how many parts of the range, at most, are told apart: a power of two.

@@ -1,5 +1,6 @@
 #include "driver/tube_reuse.h"
 
+#include "driver/tube_certificate.h"
 #include "reach/system/bounds.h"
 #include "reach/system/centred.h"
 #include "reach/system/text.h"
@@ -40,7 +41,8 @@ bool HoldsOn(const std::vector<reach::Leaf>& leaves, const reach::Problem& probl
 
 }  // namespace
 
-std::string TubeReuse::Covers(const ContractResult& contract) const {
+std::string TubeReuse::Covers(const ContractResult& contract,
+                              reach::certify::Certificate& certificate) const {
   if (!contract.impossible.empty() || tubes_.empty()) return "";
   const reach::Problem problem = reach::Centred(contract.made.problem).problem;
   const auto it = tubes_.find(TextWith(problem, {}));
@@ -50,6 +52,7 @@ std::string TubeReuse::Covers(const ContractResult& contract) const {
         !HoldsOn(it->second.leaves, problem, claim))
       return "";
   }
+  certificate = it->second.certificate;
   return it->second.contract;
 }
 
@@ -58,7 +61,7 @@ void TubeReuse::Remember(const ContractResult& contract) {
   const auto* proved = std::get_if<reach::Proved>(&*contract.outcome);
   if (proved == nullptr) return;
   const reach::CentredProblem centred = reach::Centred(contract.made.problem);
-  Tube tube{contract.made.problem.name, proved->leaves, {}};
+  Tube tube{contract.made.problem.name, proved->leaves, CertificateOf(*proved), {}};
   const auto move = [&](interval::Box& box) {
     for (size_t i = 0; i < box.size(); ++i) box[i] = box[i] - reach::Enclose(centred.origin[i]);
   };

@@ -13,8 +13,8 @@ namespace rondo::driver {
 /// or to hold on the boxes of the tube.
 class TubeReuse {
  public:
-  /// The contract whose tube shows that this one is kept; empty if there is none.
-  std::string Covers(const ContractResult& contract) const;
+  /// The contract whose tube shows that this one is kept, and its certificate; empty if there is none.
+  std::string Covers(const ContractResult& contract, reach::certify::Certificate& certificate) const;
   /// Keeps what is proved.
   void Remember(const ContractResult& contract);
 
@@ -22,7 +22,8 @@ class TubeReuse {
   struct Tube {
     std::string contract;
     std::vector<reach::Leaf> leaves;  ///< in centred coordinates
-    std::set<std::string> claims;     ///< that were proved, as text
+    reach::certify::Certificate certificate;
+    std::set<std::string> claims;  ///< that were proved, as text
   };
   std::map<std::string, Tube> tubes_;  ///< by the text of the centred problem without claims
 };

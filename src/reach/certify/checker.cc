@@ -12,96 +12,60 @@ namespace rondo::reach::certify {
 
 namespace {
 
-constexpr size_t kMostDepth = 400;  // of cuts, one inside the other
+constexpr size_t kMostCuts = 4000;  // one inside the other
 constexpr size_t kMostSplits = 6;   // of a part, one inside the other
 
-// Do parts cover a box? By cuts that no part straddles: proofs split boxes in two.
-class Cover {
- public:
-  Cover(const System& system, const std::vector<PartRecord>& parts) : system_(system), parts_(parts) {}
-
-  bool Run(const interval::Box& box) {
-    std::vector<size_t> all(parts_.size());
-    for (size_t i = 0; i < all.size(); ++i) all[i] = i;
-    return Covers(box, all, 0);
+// Which half of a box; copies of a state have its bounds.
+interval::Box Half(const System& system, interval::Box box, size_t side, bool upper) {
+  const double middle = box[side].Middle();
+  (upper ? box[side].lo : box[side].hi) = middle;
+  const auto& copies = system.problem->copy_of;
+  for (size_t i = 0; i < copies.size(); ++i) {
+    if (copies[i] == side) box[i] = box[side];
   }
+  return box;
+}
 
- private:
-  bool IsCopy(size_t i) const {
-    const auto& copies = system_.problem->copy_of;
-    return i < copies.size() && copies[i].has_value();
-  }
-  // Sides of copies are those of the originals.
-  void Set(interval::Box& box, size_t side, interval::Interval value) const {
-    box[side] = value;
-    const auto& copies = system_.problem->copy_of;
-    for (size_t i = 0; i < copies.size(); ++i) {
-      if (copies[i] == side) box[i] = value;
-    }
-  }
-
-  bool Covers(const interval::Box& box, const std::vector<size_t>& inside, size_t depth) const {
-    for (const size_t p : inside) {
-      bool holds = true;
-      for (size_t i = 0; i < box.size(); ++i) holds = holds && parts_[p].initial[i].Contains(box[i]);
-      if (holds) return true;
-    }
-    if (inside.empty() || depth > kMostDepth)
-      return CheckBox(system_.assumed_terms, system_.assumed, box) == Truth::kFalse;
-    for (size_t i = 0; i < box.size(); ++i) {
-      if (IsCopy(i)) continue;
-      for (const size_t p : inside) {
-        for (const double at : {parts_[p].initial[i].lo, parts_[p].initial[i].hi}) {
-          if (!(box[i].lo < at && at < box[i].hi)) continue;
-          std::vector<size_t> below;
-          std::vector<size_t> above;
-          bool straddles = false;
-          for (const size_t q : inside) {
-            const interval::Interval side = parts_[q].initial[i];
-            if (side.hi <= at) {
-              below.push_back(q);
-            } else if (side.lo >= at) {
-              above.push_back(q);
-            } else {
-              straddles = true;
-              break;
-            }
-          }
-          if (straddles) continue;
-          interval::Box half = box;
-          Set(half, i, {box[i].lo, at});
-          if (!Covers(half, below, depth + 1)) return false;
-          Set(half, i, {at, box[i].hi});
-          return Covers(half, above, depth + 1);
-        }
-      }
-    }
-    return CheckBox(system_.assumed_terms, system_.assumed, box) == Truth::kFalse;
-  }
-
-  const System& system_;
-  const std::vector<PartRecord>& parts_;
+struct Part {
+  interval::Box box;
+  const std::vector<PartRecord::Step>* steps;
 };
 
+// The parts with their boxes. They must be the leaves of one binary tree: then they are all of the box.
+bool Divide(const System& system, const interval::Box& box, std::span<const PartRecord* const> records,
+            size_t depth, std::vector<Part>& parts) {
+  if (records.empty() || depth > kMostCuts) return false;
+  if (records.size() == 1 && records[0]->path.size() == depth) {
+    parts.push_back({box, &records[0]->steps});
+    return true;
+  }
+  const auto& copies = system.problem->copy_of;
+  std::vector<const PartRecord*> halves[2];
+  std::optional<size_t> side;
+  for (const PartRecord* r : records) {
+    if (r->path.size() <= depth) return false;
+    const PartRecord::Cut& cut = r->path[depth];
+    if (side.value_or(cut.side) != cut.side || cut.side >= box.size()) return false;
+    if (cut.side < copies.size() && copies[cut.side]) return false;
+    side = cut.side;
+    halves[cut.upper ? 1 : 0].push_back(r);
+  }
+  return Divide(system, Half(system, box, *side, false), halves[0], depth + 1, parts) &&
+         Divide(system, Half(system, box, *side, true), halves[1], depth + 1, parts);
+}
+
 // A part that is too wide to be followed here is cut in two.
-std::string CheckPart(const System& system, Bases& bases, const PartRecord& part, size_t depth,
+std::string CheckPart(const System& system, Bases& bases, const Part& part, size_t depth,
                       const base::StopToken& stop, size_t& steps) {
   Follower follower(system, bases, stop);
-  std::string reason = follower.Run(part);
+  std::string reason = follower.Run(part.box, *part.steps);
   steps += follower.steps();
   if (reason.empty() || depth == kMostSplits || stop.StopRequested()) return reason;
   const auto side = follower.WorstSide();
   if (!side) return reason;
-  const interval::Interval whole = part.initial[*side];
-  const double middle = whole.Middle();
-  const auto& copies = system.problem->copy_of;
-  for (const interval::Interval half : {interval::Interval{whole.lo, middle}, {middle, whole.hi}}) {
-    PartRecord smaller = part;
-    smaller.initial[*side] = half;
-    for (size_t i = 0; i < copies.size(); ++i) {
-      if (copies[i] == *side) smaller.initial[i] = half;
-    }
-    std::string own = CheckPart(system, bases, smaller, depth + 1, stop, steps);
+  for (const bool upper : {false, true}) {
+    std::string own =
+        CheckPart(system, bases, {Half(system, part.box, *side, upper), part.steps}, depth + 1, stop, steps);
     if (!own.empty()) return own;
   }
   return "";
@@ -117,20 +81,18 @@ Verdict Check(const Problem& problem, const Certificate& certificate, unsigned j
     verdict.reason = system.error().message;
     return verdict;
   }
-  for (const PartRecord& part : certificate.parts) {
-    if (part.initial.size() == problem.states.size()) continue;
-    verdict.reason = "it is about another number of states";
-    return verdict;
-  }
-  if (!Cover(system.value(), certificate.parts).Run(problem.initial)) {
-    verdict.reason = "its parts do not cover the initial set";
+  std::vector<const PartRecord*> records;
+  for (const PartRecord& r : certificate.parts) records.push_back(&r);
+  std::vector<Part> parts;
+  if (!Divide(system.value(), problem.initial, records, 0, parts)) {
+    verdict.reason = "its parts are not the whole initial set";
     return verdict;
   }
   Bases bases;
-  std::vector<std::string> reasons(certificate.parts.size());
-  std::vector<size_t> steps(certificate.parts.size());
-  base::ParallelFor(certificate.parts.size(), jobs, [&](size_t i) {
-    reasons[i] = CheckPart(system.value(), bases, certificate.parts[i], 0, stop, steps[i]);
+  std::vector<std::string> reasons(parts.size());
+  std::vector<size_t> steps(parts.size());
+  base::ParallelFor(parts.size(), jobs, [&](size_t i) {
+    reasons[i] = CheckPart(system.value(), bases, parts[i], 0, stop, steps[i]);
   });
   for (size_t i = 0; i < reasons.size(); ++i) {
     verdict.steps += steps[i];

@@ -12,16 +12,21 @@ namespace rondo::reach::certify {
 
 /// How one part of the initial set was followed.
 struct PartRecord {
+  /// Which half of a side.
+  struct Cut {
+    size_t side;  ///< a state, no copy
+    bool upper;
+  };
   struct Step {
     double length;  ///< seconds
     size_t degree;  ///< of polynomials in the initial state
   };
-  interval::Box initial;
+  std::vector<Cut> path;    ///< from the whole initial set to the part
   std::vector<Step> steps;  ///< none if nothing in the part satisfies what is assumed
 };
 
-/// What a proof of a problem leaves behind. Nothing in it is believed: parts must cover the initial set, and
-/// steps are what is tried first.
+/// What a proof of a problem leaves behind. Nothing in it is believed: its parts must be all of the initial
+/// set, and its steps are what is tried first.
 struct Certificate {
   std::vector<PartRecord> parts;
 };

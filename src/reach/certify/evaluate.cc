@@ -21,7 +21,7 @@ Chord ChordOfAbs(Interval x) {
 }
 
 Model Abs(const Algebra& algebra, const Model& a) {
-  const Interval range = algebra.Range(a);
+  const Interval range = algebra.Bounds(a);
   if (range.lo >= 0) return a;
   if (range.hi <= 0) return algebra.Affine(-1, a, Interval::Point(0));
   const Chord chord = ChordOfAbs(range);
@@ -88,7 +88,7 @@ std::optional<std::vector<Model>> Evaluate(const Program& program, const Algebra
 
 std::vector<Interval> RangesOf(const Algebra& algebra, const std::vector<Model>& models) {
   std::vector<Interval> ranges;
-  for (const Model& m : models) ranges.push_back(algebra.Range(m));
+  for (const Model& m : models) ranges.push_back(algebra.Bounds(m));
   return ranges;
 }
 

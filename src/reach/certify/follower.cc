@@ -58,11 +58,11 @@ void Follower::Begin(const interval::Box& box) {
   set_.AddErrors(thin);
 }
 
-std::string Follower::Run(const PartRecord& part) {
-  if (CheckBox(system_.assumed_terms, system_.assumed, part.initial) == Truth::kFalse) return "";
-  part_ = &part;
-  if (part.steps.empty()) return "a part of the initial set has no steps";
-  Begin(part.initial);
+std::string Follower::Run(const interval::Box& part, const std::vector<PartRecord::Step>& steps) {
+  if (CheckBox(system_.assumed_terms, system_.assumed, part) == Truth::kFalse) return "";
+  if (steps.empty()) return "a part of the initial set has no steps";
+  hints_ = &steps;
+  Begin(part);
   for (const CompiledClaim& claim : system_.claims) falls_.push_back(claim.starts_below);
   const std::vector<Rational>& instants = system_.instants;
   for (size_t k = 0; k + 1 < instants.size(); ++k) {
@@ -114,7 +114,7 @@ bool Follower::Segment(const Rational& from, const Rational& to) {
     time_ = begin + (to - from).ToDouble() - left.hi;
     double wanted = carried;
     if (!(wanted > 0)) {
-      const auto& hint = part_->steps[std::min(next_hint_, part_->steps.size() - 1)];
+      const PartRecord::Step& hint = (*hints_)[std::min(next_hint_, hints_->size() - 1)];
       ++next_hint_;
       wanted = hint.length;
       if (hint.degree != set_.basis->degree() && symbols_ > 0)
@@ -275,7 +275,7 @@ bool Follower::StaysBelow(const Step& step, size_t output, const OnBox& on) cons
   const double r = square > 0 ? along / square : 0;
   if (!std::isfinite(r)) return false;
   const std::vector<LinearPart> both{{1, 0, 0}, {-r, 0, 1}};
-  return algebra.Range(algebra.Linear(both, none, {rate, g})).hi <= 0;
+  return algebra.Range(algebra.Linear(both, none, {rate, g}), 0, 1).hi <= 0;
 }
 
 }  // namespace rondo::reach::certify

@@ -14,7 +14,7 @@ class Follower {
       : system_(system), bases_(bases), stop_(stop) {}
 
   /// Why the claims are not shown; empty if they are.
-  std::string Run(const PartRecord& part);
+  std::string Run(const interval::Box& part, const std::vector<PartRecord::Step>& steps);
   size_t steps() const { return steps_; }
   /// After a failure: the side of the part whose halves should be looked at, each on its own, if there is
   /// one.
@@ -34,7 +34,7 @@ class Follower {
   const System& system_;
   Bases& bases_;
   const base::StopToken& stop_;
-  const PartRecord* part_ = nullptr;
+  const std::vector<PartRecord::Step>* hints_ = nullptr;
   std::vector<std::optional<size_t>> symbol_;  ///< by state
   size_t next_hint_ = 0;
   size_t symbols_ = 0;

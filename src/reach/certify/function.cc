@@ -87,7 +87,7 @@ double CoefficientBound(CodeOp function, Interval at, size_t k) {
 }
 
 std::optional<Model> Algebra::Function(CodeOp function, const Model& a) const {
-  const Interval range = Range(a);
+  const Interval range = Bounds(a);
   const double middle = a.polynomial[0];
   Model offset = a;
   offset.polynomial[0] = 0;
@@ -151,13 +151,13 @@ std::optional<Model> Algebra::Angle(const Model& y, const Model& x) const {
   const LinearPart none{0, 0, 0};
   const Model right = Linear(std::vector{part(cosine, 1), part(sine, 0)}, none, both);
   const Model left = Linear(std::vector{part(cosine, 0), part(-sine, 1)}, none, both);
-  if (!(Range(right).lo > 0)) return std::nullopt;
+  if (!(Bounds(right).lo > 0)) return std::nullopt;
   const auto inverse = Function(CodeOp::kReciprocal, right);
   if (!inverse) return std::nullopt;
   const auto angle = Function(CodeOp::kAtan, Product(left, *inverse));
   if (!angle) return std::nullopt;
   Model out = Affine(1, *angle, Interval::Point(a));
-  const Interval range = Range(out);
+  const Interval range = Bounds(out);
   if (!(range.lo > -kBelowPi && range.hi < kBelowPi)) return std::nullopt;
   return out;
 }

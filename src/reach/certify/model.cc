@@ -219,25 +219,11 @@ Model Algebra::Either(const Model& a, const Model& b) const {
   return out;
 }
 
-Interval Algebra::Range(const Model& model, double from, double to) const {
-  // The constant in s: about the middle of the time, in interval arithmetic.
-  const size_t top = limit_;
-  const Interval time{from, to};
-  const double middle = time.Middle();
-  std::vector<Interval> shifted(top + 1);
-  for (size_t p = 0; p <= top; ++p) shifted[p] = Interval::Point(model.polynomial[p]);
-  if (model.length[0] > 1) {
-    for (size_t a = 0; a < top; ++a) {
-      for (size_t p = top; p-- > a;) shifted[p] = shifted[p] + shifted[p + 1] * Interval::Point(middle);
-    }
-  }
-  const Interval offset = time - Interval::Point(middle);
-  Interval constant = shifted[top];
-  for (size_t p = top; p-- > 0;) constant = constant * offset + shifted[p];
-  // All others: roundings are accounted for together.
-  double down = 0;
-  double up = 0;
-  for (size_t m = 1; m < basis_.size(); ++m) {
+// What the monomials from `first` on add up to.
+Interval Algebra::RangeFrom(size_t first, const Model& model, double from, double to) const {
+  double lower = 0;
+  double upper = 0;
+  for (size_t m = first; m < basis_.size(); ++m) {
     const size_t length = model.length[m];
     if (length == 0) continue;
     const double* c = model.polynomial.data() + m * stride();
@@ -247,17 +233,40 @@ Interval Algebra::Range(const Model& model, double from, double to) const {
       lo = c[p] + (lo >= 0 ? lo * from : lo * to);
       hi = c[p] + (hi >= 0 ? hi * to : hi * from);
     }
-    if (basis_.IsEven(m)) {
-      down += std::fmax(0, -lo);
-      up += std::fmax(0, hi);
+    if (m == 0) {
+      lower += lo;
+      upper += hi;
+    } else if (basis_.IsEven(m)) {
+      lower += std::fmin(0, lo);
+      upper += std::fmax(0, hi);
     } else {
       const double size = std::fmax(std::fabs(lo), std::fabs(hi));
-      down += size;
-      up += size;
+      lower -= size;
+      upper += size;
     }
   }
-  const double error = model.error + Gamma(static_cast<double>(2 * top + 4)) * model.norm;
-  return constant + Interval{-Up(down + error), Up(up + error)};
+  // At most two roundings for each power and one for each monomial.
+  const double roundings = Gamma(static_cast<double>(2 * limit_ + basis_.size() + 4));
+  const double error = Up(model.error + roundings * model.norm);
+  return Interval{lower, upper} + Around(error);
+}
+
+Interval Algebra::Bounds(const Model& model) const { return RangeFrom(0, model, 0, 1); }
+
+Interval Algebra::Range(const Model& model, double from, double to) const {
+  // The constant in s: about the middle of the time, in interval arithmetic.
+  const size_t top = std::max<size_t>(model.length[0], 1) - 1;
+  const Interval time{from, to};
+  const double middle = time.Middle();
+  std::vector<Interval> shifted(top + 1);
+  for (size_t p = 0; p <= top; ++p) shifted[p] = Interval::Point(model.polynomial[p]);
+  for (size_t a = 0; a < top; ++a) {
+    for (size_t p = top; p-- > a;) shifted[p] = shifted[p] + shifted[p + 1] * Interval::Point(middle);
+  }
+  const Interval offset = time - Interval::Point(middle);
+  Interval constant = shifted[top];
+  for (size_t p = top; p-- > 0;) constant = constant * offset + shifted[p];
+  return constant + RangeFrom(1, model, from, to);
 }
 
 }  // namespace rondo::reach::certify

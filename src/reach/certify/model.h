@@ -53,12 +53,15 @@ class Algebra {
   /// A model that holds whatever a or b hold.
   Model Either(const Model& a, const Model& b) const;
 
+  /// Encloses the values, at little cost.
+  Interval Bounds(const Model& model) const;
   /// Encloses the values for t in [from, to].
-  Interval Range(const Model& model, double from = 0, double to = 1) const;
+  Interval Range(const Model& model, double from, double to) const;
 
  private:
   size_t stride() const { return order_ + 1; }
   Model Empty() const;
+  Interval RangeFrom(size_t first, const Model& model, double from, double to) const;
   double CutOff(const Model& a, const Model& b) const;
 
   const Basis& basis_;

@@ -22,7 +22,7 @@ Step::Step(const Dynamics& dynamics, size_t order)
 
 interval::Box Step::Ranges() const {
   interval::Box box;
-  for (size_t i = 0; i < dynamics_.states; ++i) box.push_back(algebra_->Range(during_[i]));
+  for (size_t i = 0; i < dynamics_.states; ++i) box.push_back(algebra_->Range(during_[i], 0, 1));
   return box;
 }
 

@@ -30,6 +30,30 @@ base::Result<std::vector<Interval>> RangesOn(const Problem& problem, const Prove
   return all;
 }
 
+namespace {
+
+struct Part {
+  interval::Box box;
+  std::vector<Cut> path;
+};
+
+// Both halves of a part; copies of a state have its bounds.
+std::vector<Part> Halves(const Problem& problem, const Part& part, size_t side) {
+  const Interval whole = part.box[side];
+  std::vector<Part> halves;
+  for (const bool upper : {false, true}) {
+    Part& half = halves.emplace_back(part);
+    half.path.push_back({side, upper});
+    half.box[side] = upper ? Interval{whole.Middle(), whole.hi} : Interval{whole.lo, whole.Middle()};
+    for (size_t k = 0; k < problem.copy_of.size(); ++k) {
+      if (problem.copy_of[k] == side) half.box[k] = half.box[side];
+    }
+  }
+  return halves;
+}
+
+}  // namespace
+
 base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& options,
                              const base::StopToken& stop) {
   auto made = Stages::Of(problem);
@@ -40,7 +64,7 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
   Trajectories trajectories = std::move(found).value();
   Search search(stages, options, trajectories, stop);
 
-  std::vector<interval::Box> open{problem.initial};
+  std::vector<Part> open{{problem.initial, {}}};
   Proved proved;
   std::string reason;
   bool searched = false;
@@ -57,17 +81,18 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
         attempts[i].reason = "stopped";
         return;
       }
-      attempts[i] = Runner(stages, options, flow, open[i], problem.initial, stop).Run();
+      attempts[i] = Runner(stages, options, flow, open[i].box, problem.initial, stop).Run();
     });
-    std::vector<interval::Box> next;
+    std::vector<Part> next;
     for (size_t i = 0; i < attempts.size(); ++i) {
       Attempt& a = attempts[i];
       if (a.proved) {
         ++done;
         proved.steps += a.leaf.steps.size();
         if (a.vacuous) {
-          proved.empty.push_back(std::move(open[i]));
+          proved.empty.push_back(std::move(open[i].path));
         } else {
+          a.leaf.path = std::move(open[i].path);
           proved.leaves.push_back(std::move(a.leaf));
         }
         continue;
@@ -82,18 +107,12 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
         searched = true;
         if (auto refuted = search.Run(options.samples)) return Outcome{std::move(*refuted)};
       }
-      const Interval side = open[i][a.split];
+      const Interval side = open[i].box[a.split];
       const double middle = side.Middle();
       if (side.IsPoint() || middle <= side.lo || middle >= side.hi ||
           side.Width() < 1e-4 * problem.initial[a.split].Width())
         return Outcome{Undecided{reason, search.closest(), std::move(proved.leaves)}};
-      for (const Interval half : {Interval{side.lo, middle}, Interval{middle, side.hi}}) {
-        next.push_back(open[i]);
-        next.back()[a.split] = half;
-        for (size_t k = 0; k < problem.copy_of.size(); ++k) {
-          if (problem.copy_of[k] == a.split) next.back()[k] = half;
-        }
-      }
+      for (Part& half : Halves(problem, open[i], a.split)) next.push_back(std::move(half));
     }
     if (done + next.size() > options.most_leaves)
       return Outcome{Undecided{reason + ", with the most parts that are allowed", search.closest(),

@@ -17,9 +17,16 @@ struct TubeSegment {
   interval::Box during;
 };
 
+/// Which half of a side of the initial set.
+struct Cut {
+  size_t side = 0;  ///< a state, no copy
+  bool upper = false;
+};
+
 /// A part of the initial set for which every claim was shown, and how.
 struct Leaf {
   interval::Box initial;
+  std::vector<Cut> path;  ///< from the whole initial set to this part
   std::vector<TubeSegment> tube;
   interval::Box final;
   /// For each step: its length, and the degree of its polynomials.
@@ -28,7 +35,7 @@ struct Leaf {
 
 struct Proved {
   std::vector<Leaf> leaves;
-  std::vector<interval::Box> empty;  ///< parts in which nothing satisfies what is assumed
+  std::vector<std::vector<Cut>> empty;  ///< parts in which nothing satisfies what is assumed
   size_t steps = 0;
 };
 

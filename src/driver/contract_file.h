@@ -1,0 +1,34 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+#include "driver/reachability.h"
+
+/// What files about a contract have in common: certificates, and trajectories that break it.
+namespace rondo::driver {
+
+struct ContractName {
+  std::vector<std::string> files;  ///< robots and choreographies, or a Koord program
+  std::string spec;
+  std::string contract;
+};
+
+/// With the paths made absolute.
+nlohmann::json ContractToJson(const char* format, const ContractName& name);
+/// Nothing if something is missing.
+std::optional<ContractName> ContractFromJson(const nlohmann::json& json);
+/// Is this JSON with that `format`?
+bool HasFormat(std::string_view text, const char* format);
+
+/// Reads the files and finds the contract.
+///
+/// @error if the files cannot be used, or have no such contract; what is wrong with them is in the session.
+base::Result<const ContractResult*> FindContract(const ContractName& name, Session& session,
+                                                 LoadedContracts& loaded);
+
+}  // namespace rondo::driver
