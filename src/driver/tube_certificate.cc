@@ -19,6 +19,24 @@ constexpr const char* kFormat = "rondo-tube/1";
 using reach::certify::Certificate;
 using reach::certify::PartRecord;
 
+PartRecord::Step StepOf(const reach::StepRecord& record) {
+  using From = reach::StepRecord::Kind;
+  using To = PartRecord::Step::Kind;
+  PartRecord::Step step;
+  step.kind = record.kind == From::kStep    ? To::kStep
+              : record.kind == From::kCross ? To::kCross
+              : record.kind == From::kSplit ? To::kSplit
+                                            : To::kOther;
+  step.length = record.length;
+  step.degree = record.degree;
+  step.event = record.event;
+  step.together = record.together;
+  step.symbol = record.symbol;
+  for (const auto& [exponents, factor] : record.time)
+    step.time.emplace_back(std::vector<uint32_t>(exponents.begin(), exponents.end()), factor);
+  return step;
+}
+
 bool ReadPart(const nlohmann::json& json, PartRecord& part) {
   if (!json.is_object() || !json.contains("path") || !json.contains("steps") || !json["path"].is_array() ||
       !json["steps"].is_array())
@@ -49,7 +67,7 @@ Certificate CertificateOf(const reach::Proved& proved) {
   };
   for (const reach::Leaf& leaf : proved.leaves) {
     PartRecord& part = add(leaf.path);
-    for (const auto& [length, degree] : leaf.steps) part.steps.push_back({length, degree});
+    for (const reach::StepRecord& step : leaf.steps) part.steps.push_back(StepOf(step));
   }
   for (const auto& path : proved.empty) add(path);
   return certificate;

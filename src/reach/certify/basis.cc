@@ -37,9 +37,8 @@ Basis::Basis(size_t symbols, size_t degree) : symbols_(symbols), degree_(symbols
     up_to.push_back(monomials.size());
     degree_of_.resize(monomials.size(), static_cast<uint8_t>(d));
   }
-  std::map<Powers, size_t> index;
   for (size_t m = 0; m < monomials.size(); ++m) {
-    index.emplace(monomials[m], m);
+    index_.emplace(monomials[m], m);
     exponents_.insert(exponents_.end(), monomials[m].begin(), monomials[m].end());
     even_.push_back(std::ranges::all_of(monomials[m], [](uint32_t e) { return e % 2 == 0; }) ? 1 : 0);
   }
@@ -48,7 +47,7 @@ Basis::Basis(size_t symbols, size_t degree) : symbols_(symbols), degree_(symbols
   for (size_t i = 0; i < monomials.size(); ++i) {
     for (size_t j = 0; j < up_to[degree_ - degree_of_[i]]; ++j) {
       for (size_t s = 0; s < symbols; ++s) product[s] = monomials[i][s] + monomials[j][s];
-      pairs[index[product]].push_back({static_cast<uint32_t>(i), static_cast<uint32_t>(j)});
+      pairs[index_.at(product)].push_back({static_cast<uint32_t>(i), static_cast<uint32_t>(j)});
     }
   }
   begin_.push_back(0);
@@ -57,6 +56,11 @@ Basis::Basis(size_t symbols, size_t degree) : symbols_(symbols), degree_(symbols
     begin_.push_back(pairs_.size());
     most_pairs_ = std::max(most_pairs_, p.size());
   }
+}
+
+std::optional<size_t> Basis::Find(const std::vector<uint32_t>& exponents) const {
+  const auto it = index_.find(exponents);
+  return it == index_.end() ? std::nullopt : std::optional(it->second);
 }
 
 std::shared_ptr<const Basis> Bases::Of(size_t symbols, size_t degree) {

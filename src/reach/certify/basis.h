@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,9 @@ class Basis {
   size_t DegreeOf(size_t monomial) const { return degree_of_[monomial]; }
   /// Are all exponents even? Then it is never negative.
   bool IsEven(size_t monomial) const { return even_[monomial] != 0; }
+  size_t symbols() const { return symbols_; }
+  /// The monomial with these exponents, by symbol, if its degree is not too high.
+  std::optional<size_t> Find(const std::vector<uint32_t>& exponents) const;
   /// By symbol.
   std::span<const uint32_t> Exponents(size_t monomial) const {
     return std::span(exponents_).subspan(monomial * symbols_, symbols_);
@@ -38,6 +42,7 @@ class Basis {
  private:
   size_t symbols_, degree_;
   std::vector<uint32_t> exponents_;
+  std::map<std::vector<uint32_t>, size_t> index_;
   std::vector<uint8_t> degree_of_, even_;
   std::vector<size_t> begin_;
   std::vector<Pair> pairs_;

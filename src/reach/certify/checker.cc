@@ -16,10 +16,10 @@ constexpr size_t kMostCuts = 4000;  // one inside the other
 constexpr size_t kMostSplits = 6;   // of a part, one inside the other
 
 // Which half of a box; copies of a state have its bounds.
-interval::Box Half(const System& system, interval::Box box, size_t side, bool upper) {
+interval::Box Half(System& system, interval::Box box, size_t side, bool upper) {
   const double middle = box[side].Middle();
   (upper ? box[side].lo : box[side].hi) = middle;
-  const auto& copies = system.problem->copy_of;
+  const auto& copies = system.problem().copy_of;
   for (size_t i = 0; i < copies.size(); ++i) {
     if (copies[i] == side) box[i] = box[side];
   }
@@ -32,14 +32,14 @@ struct Part {
 };
 
 // The parts with their boxes. They must be the leaves of one binary tree: then they are all of the box.
-bool Divide(const System& system, const interval::Box& box, std::span<const PartRecord* const> records,
+bool Divide(System& system, const interval::Box& box, std::span<const PartRecord* const> records,
             size_t depth, std::vector<Part>& parts) {
   if (records.empty() || depth > kMostCuts) return false;
   if (records.size() == 1 && records[0]->path.size() == depth) {
     parts.push_back({box, &records[0]->steps});
     return true;
   }
-  const auto& copies = system.problem->copy_of;
+  const auto& copies = system.problem().copy_of;
   std::vector<const PartRecord*> halves[2];
   std::optional<size_t> side;
   for (const PartRecord* r : records) {
@@ -55,7 +55,7 @@ bool Divide(const System& system, const interval::Box& box, std::span<const Part
 }
 
 // A part that is too wide to be followed here is cut in two.
-std::string CheckPart(const System& system, Bases& bases, const Part& part, size_t depth,
+std::string CheckPart(System& system, Bases& bases, const Part& part, size_t depth,
                       const base::StopToken& stop, size_t& steps) {
   Follower follower(system, bases, stop);
   std::string reason = follower.Run(part.box, *part.steps);
@@ -76,24 +76,24 @@ std::string CheckPart(const System& system, Bases& bases, const Part& part, size
 Verdict Check(const Problem& problem, const Certificate& certificate, unsigned jobs,
               const base::StopToken& stop) {
   Verdict verdict;
-  const auto system = System::Of(problem);
-  if (!system.ok()) {
-    verdict.reason = system.error().message;
+  auto made = System::Of(problem);
+  if (!made.ok()) {
+    verdict.reason = made.error().message;
     return verdict;
   }
+  System& system = *made.value();
   std::vector<const PartRecord*> records;
   for (const PartRecord& r : certificate.parts) records.push_back(&r);
   std::vector<Part> parts;
-  if (!Divide(system.value(), problem.initial, records, 0, parts)) {
+  if (!Divide(system, problem.initial, records, 0, parts)) {
     verdict.reason = "its parts are not the whole initial set";
     return verdict;
   }
   Bases bases;
   std::vector<std::string> reasons(parts.size());
   std::vector<size_t> steps(parts.size());
-  base::ParallelFor(parts.size(), jobs, [&](size_t i) {
-    reasons[i] = CheckPart(system.value(), bases, parts[i], 0, stop, steps[i]);
-  });
+  base::ParallelFor(parts.size(), jobs,
+                    [&](size_t i) { reasons[i] = CheckPart(system, bases, parts[i], 0, stop, steps[i]); });
   for (size_t i = 0; i < reasons.size(); ++i) {
     verdict.steps += steps[i];
     if (!reasons[i].empty() && verdict.reason.empty()) verdict.reason = reasons[i];

@@ -17,9 +17,22 @@ struct PartRecord {
     size_t side;  ///< a state, no copy
     bool upper;
   };
+  /// What was done next.
   struct Step {
-    double length;  ///< seconds
-    size_t degree;  ///< of polynomials in the initial state
+    enum class Kind : uint8_t {
+      kStep,   ///< some time along the flow
+      kCross,  ///< all of the set meets an event
+      kSplit,  ///< a symbol is halved: first all steps of the lower half, then all of the upper one
+      kOther,  ///< what this checker does not follow
+    };
+    double length = 0;  ///< seconds; of kCross: until all of the set has met the event
+    size_t degree = 0;  ///< of polynomials in the initial state
+    Kind kind = Kind::kStep;
+    size_t event = 0;
+    double together = 0;  ///< seconds after the event before the set is brought to one instant
+    /// Of kCross: when a start meets the event, in seconds, as a polynomial: exponents by symbol, factor.
+    std::vector<std::pair<std::vector<uint32_t>, double>> time = {};
+    size_t symbol = 0;
   };
   std::vector<Cut> path;    ///< from the whole initial set to the part
   std::vector<Step> steps;  ///< none if nothing in the part satisfies what is assumed

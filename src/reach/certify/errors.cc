@@ -89,6 +89,7 @@ bool PropagateErrors(const ErrorRates& rates, const MatrixXd& generators, const 
   const MatrixXd residual = (radius * t.most + t.residual).unaryExpr([](double x) { return Up(x); });
   out.generators = generators;
   out.most = VectorXd::Zero(n);
+  out.added = VectorXd::Zero(n);
   for (double piece = 0; piece < pieces; ++piece) {
     const VectorXd before = UpAll(out.generators.cwiseAbs().rowwise().sum());
     // The integral of the push over this piece, [piece, piece + 1] / pieces, a little enlarged.
@@ -106,6 +107,7 @@ bool PropagateErrors(const ErrorRates& rates, const MatrixXd& generators, const 
     const MatrixXd next = t.end * out.generators;
     const double gamma = Gamma(static_cast<double>(n) + 2 * t.terms_ + 4);
     const VectorXd errors = UpAll(rest + gamma * (t.most * before));
+    out.added += errors;
     const Index old = next.cols();
     out.generators.resize(n, old + n);
     out.generators.leftCols(old) = next;

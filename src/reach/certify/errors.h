@@ -18,6 +18,7 @@ struct Push {
 struct ErrorFlow {
   Eigen::MatrixXd generators;  ///< at the end
   Eigen::VectorXd most;        ///< |e(t)| for all t in [0, 1]
+  Eigen::VectorXd added;       ///< what is new among the errors at the end, roughly
 };
 
 /// Encloses every solution of e' = A(t) e + d(t), with A and d as above, that starts in { G g : |g| <= 1 }.

@@ -3,6 +3,7 @@
 #include "base/stop.h"
 #include "reach/certify/checker.h"
 #include "reach/certify/image.h"
+#include "reach/certify/observation.h"
 #include "reach/certify/system.h"
 
 namespace rondo::reach::certify {
@@ -10,7 +11,7 @@ namespace rondo::reach::certify {
 /// Follows one part of the initial set as its record says, and shows every claim on the way.
 class Follower {
  public:
-  Follower(const System& system, Bases& bases, const base::StopToken& stop)
+  Follower(System& system, Bases& bases, const base::StopToken& stop)
       : system_(system), bases_(bases), stop_(stop) {}
 
   /// Why the claims are not shown; empty if they are.
@@ -21,17 +22,36 @@ class Follower {
   std::optional<size_t> WorstSide() const;
 
  private:
-  void Begin(const interval::Box& box);
-  bool Control();
-  bool Segment(const Rational& from, const Rational& to);
-  bool StepOn(double wanted, const Rational& from, const Rational& to, double& taken);
-  bool AtInstant(const Rational& instant, bool start);
-  bool During(const Step& step, const Rational& from, const Rational& to);
-  void Fall(const Step& step);
-  bool StaysBelow(const Step& step, size_t output, const OnBox& on) const;
+  // How far a set has come.
+  struct Place {
+    ReachSet set;
+    std::shared_ptr<const ModeSystem> in;
+    size_t instant = 0;                    ///< the last one that was met
+    Interval left;                         ///< seconds to the next one
+    bool met = true;                       ///< is it just now?
+    double carried = 0;                    ///< what is left of a step that was too long
+    std::vector<std::vector<bool>> falls;  ///< by claim and term: at most zero since the start?
+  };
+
+  Place Begin(const interval::Box& box);
+  bool Enter(Place& place, const Mode& mode);
+  bool Follow(Place place);
+  bool Meet(Place& place);
+  bool Settle(Place& place);
+  bool Advance(Place& place, const PartRecord::Step* hint);
+  bool TakeStep(Place& place, double wanted);
+  bool Split(const Place& place, size_t symbol);
+  bool AtInstant(const Place& place, bool start);
   bool Fail(std::string reason);
 
-  const System& system_;
+  bool During(const Place& place, Observation& seen);
+
+  bool Cross(Place& place, const PartRecord::Step& record);
+  bool Move(Place& place, const Pace& whole, const ModeGuard* expected, double* slope);
+  bool Switch(Place& place, const ModeGuard& guard, double slope);
+  bool HoldsAround(const Place& place, const ModeSystem& in, const ReachSet& set, const ModeGuard* expected);
+
+  System& system_;
   Bases& bases_;
   const base::StopToken& stop_;
   const std::vector<PartRecord::Step>* hints_ = nullptr;
@@ -39,11 +59,10 @@ class Follower {
   size_t next_hint_ = 0;
   size_t symbols_ = 0;
   size_t order_ = 0;
-  ReachSet set_;
-  std::vector<std::vector<bool>> falls_;  ///< by claim and term: at most zero since the start?
-  double time_ = 0;                       ///< roughly, for messages
+  ReachSet last_;    ///< where it stopped
+  double time_ = 0;  ///< roughly, for messages
   size_t steps_ = 0;
-  interval::Box last_rates_;  ///< of the last step
+  size_t splits_ = 0;
   std::string reason_;
 };
 

@@ -59,6 +59,35 @@ void ReachSet::SetBasis(std::shared_ptr<const Basis> to) {
   basis = std::move(to);
 }
 
+// s = (1 + r) / 2 or (r - 1) / 2, r in [-1, 1].
+ReachSet ReachSet::Half(size_t symbol, bool upper) const {
+  ReachSet half = *this;
+  Eigen::VectorXd rounded(static_cast<Eigen::Index>(states()));
+  for (size_t i = 0; i < states(); ++i) {
+    std::vector<double>& out = half.polynomials[i];
+    std::fill(out.begin(), out.end(), 0.0);
+    double sizes = 0;
+    for (size_t m = 0; m < out.size(); ++m) {
+      const auto span = basis->Exponents(m);
+      std::vector<uint32_t> exponents(span.begin(), span.end());
+      const uint32_t power = exponents.empty() ? 0 : exponents[symbol];
+      // (c + r)^power: c^(power - k) (power choose k) r^k.
+      double choose = std::ldexp(1.0, -static_cast<int>(power));
+      for (uint32_t k = 0; k <= power; ++k) {
+        if (!exponents.empty()) exponents[symbol] = k;
+        const double term = polynomials[i][m] * (!upper && (power - k) % 2 == 1 ? -choose : choose);
+        out[*basis->Find(exponents)] += term;
+        sizes += std::fabs(term);
+        choose = choose * (power - k) / (k + 1);
+      }
+    }
+    // Binomials are exact; a coefficient is a sum of at most `degree` + 1 products.
+    rounded[static_cast<Eigen::Index>(i)] = Up(Gamma(static_cast<double>(basis->degree()) + 3) * sizes);
+  }
+  half.AddErrors(rounded);
+  return half;
+}
+
 Interval ReachSet::RangeOf(size_t state) const {
   const Algebra algebra(*basis, 0);
   return algebra.Range(algebra.InSymbols(polynomials[state]), 0, 0);

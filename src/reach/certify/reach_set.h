@@ -25,6 +25,8 @@ struct ReachSet {
   void Reduce(Eigen::Index most);
   /// Other monomials: of a higher degree, or what is above becomes an error.
   void SetBasis(std::shared_ptr<const Basis> to);
+  /// The part whose symbol is in [-1, 0] or [0, 1], with a symbol of its own in its place.
+  ReachSet Half(size_t symbol, bool upper) const;
   /// The polynomial of a state at no particular time.
   Interval RangeOf(size_t state) const;
   /// Encloses the set.

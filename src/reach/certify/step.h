@@ -14,6 +14,14 @@ struct Dynamics {
   interval::Box inputs;
 };
 
+/// How long a step lasts: `length` seconds, or, where there is a polynomial in s, length * (polynomial +-
+/// error).
+struct Pace {
+  double length = 0;
+  std::vector<double> polynomial;
+  double error = 0;
+};
+
 /// One step of the flow, shown after the fact: any polynomial p(s, t) will do; what it leaves of the equation
 /// (its defect, p' - f(p)) and how errors grow is bounded.
 ///
@@ -25,8 +33,8 @@ class Step {
   /// @param order  of p in time.
   Step(const Dynamics& dynamics, size_t order);
 
-  /// Follows all of the set for `h` seconds. False if that cannot be shown.
-  bool Take(const ReachSet& set, double h);
+  /// Follows all of the set for that long. False if that cannot be shown.
+  bool Take(const ReachSet& set, const Pace& pace);
 
   /// Models of the states and inputs during the step, errors included. Time runs from 0 to 1.
   const std::vector<Model>& during() const { return during_; }
@@ -36,11 +44,14 @@ class Step {
   /// Encloses the derivatives during the step, per second.
   const interval::Box& rates() const { return rates_; }
   const ReachSet& end() const { return end_; }
+  /// How much of the errors at the end is new, roughly: a step that adds much is too long.
+  const Eigen::VectorXd& added() const { return added_; }
 
  private:
-  bool Nominal(const ReachSet& set, double h, const OnBox& on);
-  bool Defect(double h, const OnBox& on);
-  bool Bound(const ReachSet& set, double h, const OnBox& on, ErrorFlow& flow) const;
+  std::optional<std::vector<Model>> Rates(const OnBox& on, std::optional<std::vector<Model>>* lower);
+  bool Nominal(const ReachSet& set, const OnBox& on);
+  bool Defect(const OnBox& on);
+  bool Bound(const ReachSet& set, const OnBox& on, ErrorFlow& flow) const;
   interval::Box Ranges() const;
 
   const Dynamics& dynamics_;
@@ -49,9 +60,13 @@ class Step {
   std::optional<Algebra> algebra_;
   std::vector<Model> during_;
   interval::Box region_, rates_;
+  double length_ = 0;
+  std::optional<Model> factor_;  ///< by which rates are multiplied, besides the length
+  Interval span_;                ///< what the step lasts, seconds
   Push push_;
   Nearby nearby_;
   ReachSet end_;
+  Eigen::VectorXd added_;
 };
 
 }  // namespace rondo::reach::certify

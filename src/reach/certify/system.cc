@@ -10,69 +10,18 @@
 
 namespace rondo::reach::certify {
 
-namespace {
-
-// What holds at the start as a comparison with zero is known exactly, if the start is exact.
-void FindStartsBelow(System& system) {
-  const Problem& problem = *system.problem;
-  expr::Arena& arena = *problem.arena;
-  expr::Substitution originals;
-  for (size_t i = 0; i < problem.copy_of.size(); ++i) {
-    if (problem.copy_of[i]) originals.emplace(problem.states[i], problem.states[*problem.copy_of[i]]);
-  }
-  const std::vector<TermId> necessary = Necessary(system.assumed);
-  const std::set<TermId> assumed(necessary.begin(), necessary.end());
-  for (CompiledClaim& claim : system.claims) {
-    for (size_t k = 0; k < claim.formula.terms.size(); ++k) {
-      const TermId start = expr::Substitute(arena, claim.formula.terms[k], originals);
-      const bool below =
-          assumed.contains(start) || (arena.IsNumber(start) && !(Rational(0) < arena.number(start)));
-      const auto& depends = system.observed.depends[system.observed.outputs[claim.first + k]];
-      const bool continuous = std::ranges::all_of(depends, [&](uint32_t v) {
-        return v < problem.states.size() && !(problem.controller && problem.controller->updates[v]);
-      });
-      claim.starts_below.push_back(below && continuous && claim.claim->from == Rational(0));
-    }
-  }
-}
-
-}  // namespace
-
-base::Result<System> System::Of(const Problem& problem) {
-  System system;
-  system.problem = &problem;
-  expr::Arena& arena = *problem.arena;
-  if (!problem.events.empty()) return base::Error{"events are not checked"};
-  std::vector<TermId> variables = problem.states;
-  for (const Input& input : problem.inputs) {
-    variables.push_back(input.term);
-    system.dynamics.inputs.push_back(input.bounds);
-  }
-  const auto compile = [&](const std::vector<TermId>& variables_of, const std::vector<TermId>& terms,
-                           Program& out) -> std::string {
-    auto made = Compile(arena, variables_of, terms);
-    if (!made.ok()) return made.error().message;
-    out = std::move(made).value();
-    return "";
-  };
-  system.dynamics.states = problem.states.size();
-  std::string wrong = compile(variables, problem.rates, system.dynamics.rates);
-  if (problem.controller && wrong.empty()) wrong = compile(variables, Updated(problem), system.control);
-  std::vector<TermId> terms;
-  for (const Claim& claim : problem.claims) {
-    auto formula = Normalise(arena, claim.formula);
-    if (!formula.ok()) return formula.error();
-    system.claims.push_back({&claim, std::move(formula).value(), terms.size(), {}});
-    const auto& own = system.claims.back().formula.terms;
-    terms.insert(terms.end(), own.begin(), own.end());
-  }
-  if (wrong.empty()) wrong = compile(variables, terms, system.observed);
-  auto assumed = Normalise(arena, problem.assume);
+base::Result<std::unique_ptr<System>> System::Of(const Problem& problem) {
+  auto system = std::make_unique<System>();
+  system->problem_ = &problem;
+  auto modes = Modes::Of(problem);
+  if (!modes.ok()) return modes.error();
+  system->modes_ = std::move(modes).value();
+  auto assumed = Normalise(*problem.arena, problem.assume);
   if (!assumed.ok()) return assumed.error();
-  system.assumed = std::move(assumed).value();
-  if (wrong.empty()) wrong = compile(problem.states, system.assumed.terms, system.assumed_terms);
-  if (!wrong.empty()) return base::Error{wrong};
-  FindStartsBelow(system);
+  system->assumed_ = std::move(assumed).value();
+  auto terms = Compile(*problem.arena, problem.states, system->assumed_.terms);
+  if (!terms.ok()) return terms.error();
+  system->assumed_terms_ = std::move(terms).value();
   std::set<Rational> instants{Rational(0), problem.horizon};
   if (problem.controller) {
     for (Rational t(0); t < problem.horizon; t = t + problem.controller->period) instants.insert(t);
@@ -82,14 +31,112 @@ base::Result<System> System::Of(const Problem& problem) {
       if (Rational(0) < t && t < problem.horizon) instants.insert(t);
     }
   }
-  system.instants.assign(instants.begin(), instants.end());
+  system->instants_.assign(instants.begin(), instants.end());
   return system;
 }
 
+bool System::IsEmpty(const interval::Box& box) const {
+  return CheckBox(assumed_terms_, assumed_, box) == Truth::kFalse;
+}
+
 bool System::IsSample(const Rational& instant) const {
-  if (!problem->controller || !(instant < problem->horizon)) return false;
-  const Rational count = instant / problem->controller->period;
+  if (!problem_->controller || !(instant < problem_->horizon)) return false;
+  const Rational count = instant / problem_->controller->period;
   return count.Floor() == count;
+}
+
+base::Result<std::shared_ptr<const ModeSystem>> System::For(const Mode& mode) {
+  const std::lock_guard lock(mutex_);
+  auto& known = made_[mode];
+  if (known != nullptr) return known;
+  auto made = Make(mode);
+  if (made.ok()) known = made.value();
+  return made;
+}
+
+base::Result<std::shared_ptr<const ModeSystem>> System::Make(const Mode& mode) {
+  const Problem& problem = *problem_;
+  expr::Arena& arena = *problem.arena;
+  auto system = std::make_shared<ModeSystem>();
+  system->mode = mode;
+  system->discrete.resize(problem.states.size());
+  for (size_t k = 0; k < mode.size(); ++k)
+    system->discrete[modes_.states()[k]] = Enclose(arena.number(mode[k]));
+  std::vector<TermId> variables = problem.states;
+  for (const Input& input : problem.inputs) {
+    variables.push_back(input.term);
+    system->dynamics.inputs.push_back(input.bounds);
+  }
+  std::vector<TermId> terms;
+  const auto observe = [&](const Formula& formula) {
+    const size_t first = terms.size();
+    terms.insert(terms.end(), formula.terms.begin(), formula.terms.end());
+    return first;
+  };
+  for (const Claim& claim : problem.claims) {
+    auto formula = Normalise(arena, modes_.In(mode, claim.formula));
+    if (!formula.ok()) return formula.error();
+    const size_t first = observe(formula.value());
+    system->claims.push_back({&claim, std::move(formula).value(), first, {}, {}});
+  }
+  for (size_t e = 0; e < problem.events.size(); ++e) {
+    auto formula = Normalise(arena, modes_.In(mode, problem.events[e].condition));
+    if (!formula.ok()) return formula.error();
+    auto after = modes_.After(mode, e);
+    if (!after.ok()) return after.error();
+    if (after.value() == mode) continue;  // nothing happens
+    const size_t first = observe(formula.value());
+    system->guards.push_back({e, std::move(formula).value(), first, std::move(after).value()});
+  }
+  std::string wrong;
+  const auto compile = [&](std::vector<TermId> functions, bool in_mode, Program& out) {
+    for (TermId& f : functions) f = in_mode ? modes_.In(mode, f) : f;
+    auto made = Compile(arena, variables, functions);
+    if (made.ok()) out = std::move(made).value();
+    if (!made.ok() && wrong.empty()) wrong = made.error().message;
+  };
+  system->dynamics.states = problem.states.size();
+  compile(problem.rates, true, system->dynamics.rates);
+  compile(terms, false, system->observed);
+  if (problem.controller) {
+    // A controller sets no discrete state.
+    std::vector<TermId> updated = Updated(problem);
+    compile(updated, true, system->control);
+  }
+  if (!wrong.empty()) return base::Error{wrong};
+  FindKnown(*system);
+  return std::shared_ptr<const ModeSystem>(std::move(system));
+}
+
+// What is known of the terms of claims exactly.
+void System::FindKnown(ModeSystem& system) const {
+  const Problem& problem = *problem_;
+  expr::Arena& arena = *problem.arena;
+  expr::Substitution originals;
+  for (size_t i = 0; i < problem.copy_of.size(); ++i) {
+    if (problem.copy_of[i]) originals.emplace(problem.states[i], problem.states[*problem.copy_of[i]]);
+  }
+  const std::vector<TermId> necessary = Necessary(assumed_);
+  const std::set<TermId> assumed(necessary.begin(), necessary.end());
+  const TermId zero = arena.Number(arena.Real(), Rational(0));
+  for (ModeClaim& claim : system.claims) {
+    for (size_t k = 0; k < claim.formula.terms.size(); ++k) {
+      const TermId term = claim.formula.terms[k];
+      const TermId start = expr::Substitute(arena, term, originals);
+      const bool below =
+          assumed.contains(start) || (arena.IsNumber(start) && !(Rational(0) < arena.number(start)));
+      // Inputs jump, and so does what a controller sets.
+      const auto& depends = system.observed.depends[system.observed.outputs[claim.first + k]];
+      const bool continuous = std::ranges::all_of(depends, [&](uint32_t v) {
+        return v < problem.states.size() && !(problem.controller && problem.controller->updates[v]);
+      });
+      claim.starts_below.push_back(below && continuous && claim.claim->from == Rational(0));
+      // If the term rises above zero, an event with the condition -term <= 0 happens.
+      claim.implied.push_back(std::ranges::any_of(system.guards, [&](const ModeGuard& g) {
+        return g.IsComparison() && arena.Add(g.formula.terms[0], term) == zero;
+      }));
+    }
+  }
 }
 
 }  // namespace rondo::reach::certify

@@ -60,7 +60,7 @@ class Runner::Crossing {
     if (!scaled.ok() || !after.ok() || !plain.ok()) return Next::kNo;
     if (!FindTime(*scaled.value())) return Next::kNo;
     const size_t kept = r_.attempt_.leaf.tube.size();
-    const size_t steps = r_.attempt_.leaf.steps.size();
+    StepRecord record{.kind = StepRecord::Kind::kCross, .length = window_, .event = guard_->event};
     // Once more, looking at claims.
     end_ = begin_ + window_;
     FlowSet there;
@@ -79,9 +79,15 @@ class Runner::Crossing {
     }
     if (next != Next::kChanged) {
       r_.attempt_.leaf.tube.resize(kept);
-      r_.attempt_.leaf.steps.resize(steps);
       return next;
     }
+    record.together = std::max(together, 0.0);
+    record.degree = there.degree;
+    for (size_t m = 0; m < time_.size(); ++m) {
+      const auto exponents = r_.monomials_->Exponents(m);
+      if (time_[m] != 0) record.time.emplace_back(std::vector(exponents.begin(), exponents.end()), time_[m]);
+    }
+    r_.attempt_.leaf.steps.push_back(std::move(record));
     state_.set = std::move(there);
     state_.time = end_;
     state_.possible = {{after.value()->modes[0], {}}};
@@ -149,7 +155,6 @@ class Runner::Crossing {
         const bool expected = guard_ != nullptr && g.event == guard_->event;
         if (!expected && r_.During(g, flow) != Truth::kFalse) return Next::kNo;
       }
-      r_.attempt_.leaf.steps.emplace_back(flow.stepper().h(), flow.set().degree);
       r_.Keep(stage, begin_, end_, flow.stepper().during());
       if (!r_.During(flow, stage, begin_, end_)) return Next::kFailed;
     }

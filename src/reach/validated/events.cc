@@ -177,7 +177,8 @@ Runner::Next Runner::Window(const Flow& before, State& state, double until) {
       }
       continue;
     }
-    attempt_.leaf.steps.emplace_back(flow.stepper().h(), flow.set().degree);
+    attempt_.leaf.steps.push_back(
+        {.kind = StepRecord::Kind::kOpen, .length = flow.stepper().h(), .degree = flow.set().degree});
     Keep(stage, flow.begin(), flow.time(), flow.stepper().during());
     falls_.clear();
     for (const StageClaim& claim : stage.claims) falls_.emplace_back(claim.starts_below.size(), false);

@@ -23,14 +23,31 @@ struct Cut {
   bool upper = false;
 };
 
+/// One thing that was done to follow a part, in order.
+struct StepRecord {
+  enum class Kind : uint8_t {
+    kStep,
+    kCross,  ///< all of the set meets an event
+    kSplit,  ///< into the halves of a symbol: first all about the lower one, then all about the upper one
+    kOpen,   ///< a step during which several modes are possible, or one of several that are followed alone
+  };
+  Kind kind = Kind::kStep;
+  double length = 0;  ///< seconds; of kCross: within which all of the set meets the event
+  size_t degree = 0;  ///< of polynomials
+  size_t event = 0;
+  double together = 0;  ///< seconds that the set goes on after the event before it is brought to one instant
+  /// Of kCross: when a start meets the event, in seconds; coefficients with their monomials' exponents.
+  std::vector<std::pair<std::vector<uint8_t>, double>> time = {};
+  size_t symbol = 0;
+};
+
 /// A part of the initial set for which every claim was shown, and how.
 struct Leaf {
   interval::Box initial;
   std::vector<Cut> path;  ///< from the whole initial set to this part
   std::vector<TubeSegment> tube;
   interval::Box final;
-  /// For each step: its length, and the degree of its polynomials.
-  std::vector<std::pair<double, size_t>> steps;
+  std::vector<StepRecord> steps;
 };
 
 struct Proved {

@@ -153,6 +153,7 @@ void Runner::SetDiscrete(const Stage& stage, FlowSet& set) const {
 bool Runner::Fork(const State& state) {
   for (const Mode& mode : ModesOf(state)) {
     if (++forks_ > kMostForks) return Fail(state.time, "too many modes are possible");
+    attempt_.leaf.steps.push_back({.kind = StepRecord::Kind::kOpen});
     State branch = state;
     branch.possible = {{mode, {}}};
     if (!Follow(std::move(branch))) return false;
@@ -255,7 +256,7 @@ Runner::Next Runner::StepOn(Flow& flow, State& state, const Stage& stage, double
     if (!Quiet(flow, stage, state)) return Meet(flow, state, stage, until);
   }
   const Stepper& stepper = flow.stepper();
-  attempt_.leaf.steps.emplace_back(stepper.h(), flow.set().degree);
+  attempt_.leaf.steps.push_back({.length = stepper.h(), .degree = flow.set().degree});
   Keep(stage, flow.begin(), flow.time(), stepper.during());
   state.step = flow.next_step();
   if (!During(flow, stage, flow.begin(), flow.time())) return Next::kFailed;
@@ -271,8 +272,14 @@ Runner::Next Runner::Meet(const Flow& flow, State& state, const Stage& stage, do
     // Some starts met it too soon to tell from where the step began.
     State from = std::move(*earlier_);
     from.possible = state.possible;
+    const StepRecord last = attempt_.leaf.steps.back();
+    attempt_.leaf.steps.pop_back();
     next = Cross(from, stage, until, symbol);
-    if (next == Next::kChanged || symbol) state = std::move(from);
+    if (next == Next::kChanged || symbol) {
+      state = std::move(from);
+    } else {
+      attempt_.leaf.steps.push_back(last);
+    }
   }
   if (next == Next::kChanged || stop_.StopRequested()) return next;
   if (symbol && splits_ < kMostSplits && state.halvings < kMostDeep) return SplitAt(state, *symbol);
@@ -282,6 +289,7 @@ Runner::Next Runner::Meet(const Flow& flow, State& state, const Stage& stage, do
 // Those who meet an event sooner, and those who meet it later, each on their own.
 Runner::Next Runner::SplitAt(const State& state, size_t symbol) {
   ++splits_;
+  attempt_.leaf.steps.push_back({.kind = StepRecord::Kind::kSplit, .symbol = symbol});
   for (const bool upper : {false, true}) {
     State half = state;
     half.set = Half(state.set, *monomials_, symbol, upper);

@@ -1,0 +1,182 @@
+// Events that all of a set meets.
+#include <cmath>
+
+#include "reach/certify/follower.h"
+#include "reach/certify/observation.h"
+#include "reach/system/bounds.h"
+
+namespace rondo::reach::certify {
+
+namespace {
+
+constexpr double kFirstShare = 0.25;    // of a stretch of time, for a step
+constexpr double kSmallShare = 0x1p-9;  // is not made smaller to lose less
+constexpr double kLeastShare = 0x1p-24;
+constexpr double kMostAdded = 1e-3;  // to errors, relative to the set, by all of a stretch
+constexpr int kMostAttempts = 20;
+
+// Does the step add more to the errors than its share?
+bool IsCrude(const ReachSet& set, const Step& step, double share) {
+  const interval::Box box = set.Box();
+  for (size_t i = 0; i < set.states(); ++i) {
+    if (step.added()[static_cast<Eigen::Index>(i)] >
+        kMostAdded * share * box[i].Width() + 1e-13 * Magnitude(box[i]))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+// With a time q(s) for each start: the flow of q f over one unit of time leads to about where the condition
+// begins to hold. A course meets it at most |g| / m sooner or later, where g is its term there and -m bounds
+// g' all around; so after q(s), every course is one of the mode after, from a state that is at most
+// |g| / m * |f - f'| away. After some more time for all, the flow of (W - q) f' leads them to one instant.
+bool Follower::Cross(Place& place, const PartRecord::Step& record) {
+  const ModeGuard* guard = nullptr;
+  for (const ModeGuard& g : place.in->guards) {
+    if (g.event == record.event) guard = &g;
+  }
+  if (guard == nullptr || !guard->IsComparison()) return Fail("there is no such event");
+  const double window = record.length;
+  if (!(window > 0) || !(record.together >= 0)) return Fail("an event takes no time");
+  const Interval left = place.left - Interval::Point(window) - Interval::Point(record.together);
+  if (!(left.lo > 0)) return Fail("an event lasts beyond an instant");
+  Pace to_event{1, std::vector<double>(place.set.basis->size()), 0};
+  for (const auto& [exponents, factor] : record.time) {
+    const auto monomial =
+        exponents.size() == symbols_ ? place.set.basis->Find(exponents) : std::optional<size_t>();
+    if (monomial) to_event.polynomial[*monomial] += factor;
+  }
+  Pace rest = to_event;
+  for (double& x : rest.polynomial) x = -x;
+  const double at = to_event.polynomial[0];
+  rest.polynomial[0] = window - at;
+  rest.error = Up(Gamma(2) * (window + std::fabs(at)));
+  for (std::vector<bool>& f : place.falls) f.assign(f.size(), false);
+  const std::shared_ptr<const ModeSystem> before = place.in;  // the guard lives there
+  double slope = HUGE_VAL;
+  if (!Move(place, to_event, guard, &slope) || !Switch(place, *guard, slope)) return false;
+  if (record.together > 0 && !Move(place, {record.together, {}, 0}, nullptr, nullptr)) return false;
+  if (!Move(place, rest, nullptr, nullptr)) return false;
+  place.left = left;
+  place.carried = 0;
+  return true;
+}
+
+// Follows the set for all of the pace, in steps. No event happens but, perhaps, the expected one: then its
+// term falls, by at least `slope` in a second.
+bool Follower::Move(Place& place, const Pace& whole, const ModeGuard* expected, double* slope) {
+  double share = kFirstShare;
+  for (double done = 0; done < 1;) {  // shares are powers of two: sums are exact
+    if (stop_.StopRequested()) return Fail("stopped");
+    Step step(place.in->dynamics, order_);
+    while (!step.Take(place.set, {whole.length * share, whole.polynomial, whole.error}) ||
+           (share > kSmallShare && IsCrude(place.set, step, share))) {
+      share *= 0.5;
+      if (share < kLeastShare) return Fail("the set cannot be followed through an event");
+    }
+    ++steps_;
+    Observation seen(*place.in, step);
+    for (const ModeGuard& guard : place.in->guards) {
+      if (seen.IsFalse(guard)) continue;
+      if (&guard != expected) return Fail("another event may happen");
+      const double falls = -seen.Slope(guard.first).hi;
+      if (!(falls > 0)) return Fail("an event is not met transversally");
+      *slope = std::fmin(*slope, falls);
+    }
+    if (!During(place, seen)) return false;
+    place.set = step.end();
+    done += share;
+    if (share < kFirstShare && std::fmod(done, 2 * share) == 0) share *= 2;
+  }
+  return true;
+}
+
+// From the mode before to the one after.
+bool Follower::Switch(Place& place, const ModeGuard& guard, double slope) {
+  const ModeSystem& before = *place.in;
+  const auto made = system_.For(guard.after);
+  if (!made.ok()) return Fail(made.error().message);
+  const ModeSystem& after = *made.value();
+  const size_t n = place.set.states();
+  Image image;
+  if (!image.Of(before.observed, place.set, before.dynamics.inputs))
+    return Fail("the condition of an event is not defined");
+  const double term = Magnitude(image.Range(guard.first));
+  // A box that no course leaves within twice the time by which the event may be early or late.
+  const interval::Box start = place.set.Box();
+  interval::Box box = start;
+  interval::Box rates(n);
+  interval::Box jumps(n);
+  double late = 0;
+  bool inside = false;
+  for (int attempt = 0; attempt < kMostAttempts && !inside; ++attempt) {
+    interval::Box all = box;
+    all.insert(all.end(), before.dynamics.inputs.begin(), before.dynamics.inputs.end());
+    OnBox on_before;
+    OnBox on_after;
+    OnBox on_terms;
+    if (!Linearise(before.dynamics.rates, all, 0, on_before) ||
+        !Linearise(after.dynamics.rates, all, 0, on_after) ||
+        !Linearise(before.observed, all, before.observed.outputs.size(), on_terms))
+      return Fail("something is not defined around an event");
+    interval::Box own(n);
+    for (size_t i = 0; i < n; ++i) {
+      own[i] = on_before.values[before.dynamics.rates.outputs[i]];
+      const Interval other = on_after.values[after.dynamics.rates.outputs[i]];
+      jumps[i] = own[i] - other;
+      rates[i] = interval::Hull(own[i], other);
+    }
+    const double falls =
+        std::fmin(slope, -SlopeOf(on_terms, guard.first, before.observed.variables.size(), own).hi);
+    if (!(falls > 0)) return Fail("an event is not met transversally");
+    late = Up(Up(term) / falls);
+    inside = true;
+    for (size_t i = 0; i < n; ++i) {
+      const Interval reached = start[i] + Around(2 * late) * rates[i];
+      if (!IsFinite(reached)) return Fail("an event is not met transversally");
+      if (box[i].Contains(reached)) continue;
+      inside = false;
+      box[i] = reached + Around(0.1 * reached.Width() + 0x1p-900);
+    }
+  }
+  if (!inside) return Fail("an event is not met transversally");
+  // What holds meanwhile.
+  const auto by = [&](double time, const interval::Box& speed) {
+    Eigen::VectorXd v(static_cast<Eigen::Index>(n));
+    for (size_t i = 0; i < n; ++i)
+      v[static_cast<Eigen::Index>(i)] = time > 0 ? Up(time * Magnitude(speed[i])) : 0;
+    return v;
+  };
+  ReachSet around = place.set;
+  around.AddErrors(by(2 * late, rates));
+  if (!HoldsAround(place, before, around, &guard) || !HoldsAround(place, after, around, nullptr))
+    return false;
+  place.set.AddErrors(by(late, jumps));
+  return Enter(place, after.mode);
+}
+
+// Do all claims hold there, and no event but the expected one?
+bool Follower::HoldsAround(const Place& place, const ModeSystem& in, const ReachSet& set,
+                           const ModeGuard* expected) {
+  Image image;
+  if (!image.Of(in.observed, set, in.dynamics.inputs)) return Fail("a claim is not defined at an event");
+  const auto range = [&](size_t output) { return image.Range(output); };
+  for (const ModeGuard& guard : in.guards) {
+    const Truth truth = guard.formula.Check([&](size_t atom) { return range(guard.first + atom); });
+    if (&guard != expected && truth != Truth::kFalse) return Fail("another event may happen");
+  }
+  const Rational& from = system_.instants()[place.instant];
+  const Rational& to = system_.instants()[place.instant + 1];
+  for (const ModeClaim& claim : in.claims) {
+    if (to <= claim.claim->from || claim.claim->to <= from) continue;
+    const Truth truth = claim.formula.Check([&](size_t atom) {
+      return claim.implied[atom] ? AtMostZero(range(claim.first + atom)) : range(claim.first + atom);
+    });
+    if (truth != Truth::kTrue) return Fail("`" + claim.claim->name + "` is not shown");
+  }
+  return true;
+}
+
+}  // namespace rondo::reach::certify

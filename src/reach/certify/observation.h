@@ -1,0 +1,43 @@
+#pragma once
+
+#include "reach/certify/system.h"
+
+namespace rondo::reach::certify {
+
+/// What the terms of claims and events are during a step. Computes what is asked for, once.
+class Observation {
+ public:
+  Observation(const ModeSystem& in, const Step& step);
+
+  /// Is the condition certainly false at all times of the step?
+  bool IsFalse(const ModeGuard& guard);
+  /// Does the claim hold at all times of the step? `below`: terms that are known to be at most zero.
+  bool Holds(const ModeClaim& claim, const std::vector<bool>& below);
+  /// Does a term that is at most zero when the step begins stay so? If g' <= r g along every course, for some
+  /// number r, then g(t) <= exp(r t) g(0).
+  bool StaysBelow(size_t output);
+  /// Encloses the derivative of a term, per second; everything if it depends on inputs, which jump.
+  Interval Slope(size_t output);
+
+ private:
+  Interval Range(size_t output, double from, double to);
+  const OnBox* Slopes();
+
+  const ModeSystem& in_;
+  const Step& step_;
+  std::vector<Interval> coarse_;  ///< by node
+  bool tried_ = false;
+  std::optional<std::vector<Model>> models_;
+  std::optional<OnBox> slopes_;
+  bool no_slopes_ = false;
+};
+
+/// The range of a term that is known to be at most zero.
+inline Interval AtMostZero(Interval range) { return {std::fmin(range.lo, 0), std::fmin(range.hi, 0)}; }
+
+/// Encloses the derivative of a term along the flow, where states and inputs are in a box.
+///
+/// @param slopes  the terms on the box; @param rates  what the derivatives of the states can be.
+Interval SlopeOf(const OnBox& slopes, size_t output, size_t width, const interval::Box& rates);
+
+}  // namespace rondo::reach::certify
