@@ -37,23 +37,55 @@ PartRecord::Step StepOf(const reach::StepRecord& record) {
   return step;
 }
 
-bool ReadPart(const nlohmann::json& json, PartRecord& part) {
-  if (!json.is_object() || !json.contains("path") || !json.contains("steps") || !json["path"].is_array() ||
-      !json["steps"].is_array())
-    return false;
-  for (const auto& cut : json["path"]) {
-    const bool good = cut.is_array() && cut.size() == 2 && cut[0].is_number_unsigned() && cut[1].is_boolean();
-    if (!good) return false;
-    part.path.push_back({cut[0].get<size_t>(), cut[1].get<bool>()});
+constexpr std::pair<const char*, PartRecord::Step::Kind> kKinds[] = {
+    {"cross", PartRecord::Step::Kind::kCross},
+    {"split", PartRecord::Step::Kind::kSplit},
+    {"other", PartRecord::Step::Kind::kOther}};
+
+// A step is [length, degree]; anything else is an object.
+nlohmann::json ToJson(const PartRecord::Step& step) {
+  if (step.kind == PartRecord::Step::Kind::kStep) return {step.length, step.degree};
+  nlohmann::json json{{"length", step.length}, {"degree", step.degree}};
+  for (const auto& [name, kind] : kKinds) {
+    if (kind == step.kind) json["kind"] = name;
   }
-  for (const auto& step : json["steps"]) {
-    const bool good =
-        step.is_array() && step.size() == 2 && step[0].is_number() && step[1].is_number_unsigned();
-    if (!good) return false;
-    part.steps.push_back({step[0].get<double>(), step[1].get<size_t>()});
-    if (!std::isfinite(part.steps.back().length)) return false;
+  if (step.kind == PartRecord::Step::Kind::kSplit) json["symbol"] = step.symbol;
+  if (step.kind == PartRecord::Step::Kind::kCross) {
+    json["event"] = step.event;
+    json["together"] = step.together;
+    json["time"] = step.time;
   }
-  return true;
+  return json;
+}
+
+PartRecord::Step StepFrom(const nlohmann::json& json) {
+  PartRecord::Step step;
+  if (json.is_array()) {
+    step.length = json.at(0).get<double>();
+    step.degree = json.at(1).get<size_t>();
+    return step;
+  }
+  step.kind = PartRecord::Step::Kind::kOther;
+  for (const auto& [name, kind] : kKinds) {
+    if (json.at("kind") == name) step.kind = kind;
+  }
+  step.length = json.at("length").get<double>();
+  step.degree = json.at("degree").get<size_t>();
+  if (step.kind == PartRecord::Step::Kind::kSplit) step.symbol = json.at("symbol").get<size_t>();
+  if (step.kind == PartRecord::Step::Kind::kCross) {
+    step.event = json.at("event").get<size_t>();
+    step.together = json.at("together").get<double>();
+    json.at("time").get_to(step.time);
+  }
+  return step;
+}
+
+// Throws nlohmann's exceptions.
+PartRecord PartFrom(const nlohmann::json& json) {
+  PartRecord part;
+  for (const auto& cut : json.at("path")) part.path.push_back({cut.at(0).get<size_t>(), cut.at(1).get<bool>()});
+  for (const auto& step : json.at("steps")) part.steps.push_back(StepFrom(step));
+  return part;
 }
 
 }  // namespace
@@ -86,7 +118,7 @@ base::Result<bool> SaveTube(const std::string& path, const TubeFile& file) {
     nlohmann::json cuts = nlohmann::json::array();
     for (const PartRecord::Cut& cut : part.path) cuts.push_back({cut.side, cut.upper});
     nlohmann::json steps = nlohmann::json::array();
-    for (const PartRecord::Step& step : part.steps) steps.push_back({step.length, step.degree});
+    for (const PartRecord::Step& step : part.steps) steps.push_back(ToJson(step));
     parts.push_back({{"path", cuts}, {"steps", steps}});
   }
   nlohmann::json json = ContractToJson(kFormat, {file.files, file.spec, file.contract});
@@ -105,10 +137,12 @@ base::Result<TubeFile> ReadTube(std::string_view text) {
   const auto json = nlohmann::json::parse(text, nullptr, false);
   TubeFile file;
   const auto name = ContractFromJson(json);
-  bool good = name && json.contains("parts") && json["parts"].is_array();
-  for (const auto& part : good ? json["parts"] : nlohmann::json::array())
-    good = good && ReadPart(part, file.certificate.parts.emplace_back());
-  if (!good) return base::Error{"the certificate is not complete"};
+  if (!name) return base::Error{"it does not say of which contract it is"};
+  try {
+    for (const auto& part : json.at("parts")) file.certificate.parts.push_back(PartFrom(part));
+  } catch (const nlohmann::json::exception&) {
+    return base::Error{"its parts are not what they should be"};
+  }
   file.files = name->files;
   file.spec = name->spec;
   file.contract = name->contract;

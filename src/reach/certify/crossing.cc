@@ -12,7 +12,7 @@ namespace {
 constexpr double kFirstShare = 0.25;    // of a stretch of time, for a step
 constexpr double kSmallShare = 0x1p-9;  // is not made smaller to lose less
 constexpr double kLeastShare = 0x1p-24;
-constexpr double kMostAdded = 1e-3;  // to errors, relative to the set, by all of a stretch
+constexpr double kMostAdded = 1e-2;  // to errors, relative to the set, by all of a stretch
 constexpr int kMostAttempts = 20;
 
 // Does the step add more to the errors than its share?

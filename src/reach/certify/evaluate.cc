@@ -55,7 +55,7 @@ std::optional<std::vector<Model>> Evaluate(const Program& program, const Algebra
       case CodeOp::kExp:
       case CodeOp::kLog:
       case CodeOp::kAtan:
-        made = algebra.Function(c.op, models[c.a]);
+        made = algebra.Function(c.op, models[c.a], lower == nullptr ? nullptr : &(*lower)[node]);
         break;
       case CodeOp::kAtan2:
         if (on.choices[node] != Choice::kOpen) made = algebra.Angle(models[c.a], models[c.b]);

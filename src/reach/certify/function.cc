@@ -7,7 +7,8 @@ namespace rondo::reach::certify {
 
 namespace {
 
-constexpr size_t kMostTerms = 40;
+// Of a series: first few, then more.
+constexpr size_t kMostTerms[] = {6, 14, 40};
 
 // A double below pi.
 constexpr double kBelowPi = 3.14159265358979;
@@ -86,21 +87,43 @@ double CoefficientBound(CodeOp function, Interval at, size_t k) {
   return TaylorCoefficients(function, at, all) ? Magnitude(all[k]) : HUGE_VAL;
 }
 
-std::optional<Model> Algebra::Function(CodeOp function, const Model& a) const {
+namespace {
+
+// How many terms of the series about the middle there should be, and at least what the others add up to.
+struct Series {
+  size_t terms = 1;
+  double rest = HUGE_VAL;
+};
+
+// `enough`: less is of no use.
+Series Shorten(CodeOp function, Interval range, std::span<const Interval> everywhere, double radius,
+               double enough) {
+  Series series;
+  double power = radius;
+  for (size_t k = 1; k + 1 < everywhere.size(); ++k) {
+    power = Up(power * radius);
+    const double bound =
+        function == CodeOp::kAtan ? CoefficientBound(function, range, k + 1) : Magnitude(everywhere[k + 1]);
+    const double own = Up(bound * power);
+    if (own < series.rest) series = {k, own};
+    if (series.rest <= enough || own > 1e3 * series.rest) break;
+  }
+  return series;
+}
+
+}  // namespace
+
+std::optional<Model> Algebra::Function(CodeOp function, const Model& a, const Model* lower) const {
   const Interval range = Bounds(a);
   const double middle = a.polynomial[0];
   Model offset = a;
+  offset.stages.clear();
   offset.polynomial[0] = 0;
   Seal(offset);
   const double radius = Up(offset.norm + offset.error);
   if (!std::isfinite(radius)) return std::nullopt;
   const Interval all = interval::Hull(interval::Meet(range, Interval::Point(middle) + Around(radius)),
                                       Interval::Point(middle));
-  std::vector<Interval> here(kMostTerms + 1);
-  std::vector<Interval> everywhere(kMostTerms + 1);
-  if (!TaylorCoefficients(function, Interval::Point(middle), here) ||
-      !TaylorCoefficients(function, all, everywhere))
-    return std::nullopt;
   // How far the argument is from the middle: what depends on s, and what depends on t only.
   double in_s = 0;
   double in_t = 0;
@@ -110,32 +133,35 @@ std::optional<Model> Algebra::Function(CodeOp function, const Model& a) const {
   // Terms that all are cut off anyway are of no use.
   const double cut = std::fmax(std::pow(in_s, static_cast<double>(basis_.degree() + 1)),
                                std::pow(in_t, static_cast<double>(limit_ + 1)));
-  const double scale = Magnitude(here[0]) + Magnitude(here[1]) * radius;
-  const double enough = std::fmax(1e-17 * scale, 1e-3 * cut * Magnitude(here[1]) / std::fmax(radius, 1e-300));
-  size_t terms = 1;
-  double rest = HUGE_VAL;
-  double power = radius;
-  for (size_t k = 1; k < kMostTerms; ++k) {
-    power = Up(power * radius);
-    const double bound =
-        function == CodeOp::kAtan ? CoefficientBound(function, all, k + 1) : Magnitude(everywhere[k + 1]);
-    const double own = Up(bound * power);
-    if (own < rest) {
-      rest = own;
-      terms = k;
-    }
-    if (rest <= enough || own > 1e3 * rest) break;
+  std::vector<Interval> here;
+  Series series;
+  for (const size_t most : kMostTerms) {
+    here.resize(most + 1);
+    std::vector<Interval> everywhere(most + 1);
+    if (!TaylorCoefficients(function, Interval::Point(middle), here) ||
+        !TaylorCoefficients(function, all, everywhere))
+      return std::nullopt;
+    const double slope = Magnitude(here[1]);
+    const double enough = std::fmax(1e-17 * (Magnitude(here[0]) + slope * radius),
+                                    1e-3 * cut * slope / std::fmax(radius, 1e-300));
+    series = Shorten(function, all, everywhere, radius, enough);
+    if (series.rest <= enough) break;
   }
-  Model out = Constant(here[terms]);
-  for (size_t k = terms; k-- > 0;) {
-    out = Product(out, offset);
+  // With the same number of terms, all but the highest power of t is as it was.
+  const bool known = lower != nullptr && lower->stages.size() == series.terms;
+  Model out = Constant(here[series.terms]);
+  std::vector<Model> stages;
+  for (size_t k = series.terms; k-- > 0;) {
+    out = Product(out, offset, known ? &lower->stages[series.terms - 1 - k] : nullptr);
     const double constant = here[k].Middle();
     const double before = out.polynomial[0];
-    out.polynomial[0] = before + constant;
+    if (!known || limit_ == 0) out.polynomial[0] = before + constant;
     out.error = Up(out.error + Radius(here[k]) + Gamma(1) * (std::fabs(before) + std::fabs(constant)));
     Seal(out);
+    if (limit_ < order_) stages.push_back(out);
   }
-  out.error = Up(out.error + rest);
+  out.error = Up(out.error + series.rest);
+  out.stages = std::move(stages);
   return out;
 }
 

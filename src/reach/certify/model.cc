@@ -177,12 +177,9 @@ Model Algebra::Product(const Model& a, const Model& b, const Model* lower) const
       }
     }
     double* sum = out.polynomial.data() + m * stride();
+    const size_t first = lower == nullptr ? 0 : limit_;
+    if (lower != nullptr) std::copy_n(lower->polynomial.data() + m * stride(), first, sum);
     if (factors.empty() && twin == nullptr) continue;
-    size_t first = 0;
-    if (lower != nullptr) {
-      first = limit_;
-      std::copy_n(lower->polynomial.data() + m * stride(), first, sum);
-    }
     for (size_t p = first; p < powers; ++p) {
       sum[p] = SumOf(factors, limit_ - p, p + 1) * (square ? 2 : 1);
       for (size_t q = 0; twin != nullptr && q <= p; ++q) sum[p] += twin[q] * twin[p - q];

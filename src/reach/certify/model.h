@@ -19,6 +19,7 @@ struct Model {
   std::vector<uint8_t> length;  ///< by monomial: powers of t that may occur are below this
   std::vector<double> norms;    ///< sums of magnitudes, by degree in s and power of t
   double norm = 0;              ///< at least the sum of all magnitudes
+  std::vector<Model> stages;    ///< of a function: the results of Horner's scheme, for the next limit
 };
 
 /// Rigorous arithmetic with models. What is cut off and every rounding go to the errors.
@@ -45,7 +46,9 @@ class Algebra {
   /// @param lower  the same product at the limit before, if it is known: its powers of t are taken over.
   Model Product(const Model& a, const Model& b, const Model* lower = nullptr) const;
   /// A function of one variable (kReciprocal ... kAtan); nothing if it is not defined everywhere.
-  std::optional<Model> Function(CodeOp function, const Model& a) const;
+  ///
+  /// @param lower  as for products.
+  std::optional<Model> Function(CodeOp function, const Model& a, const Model* lower = nullptr) const;
   /// The angle of (x, y) in (-pi, pi); nothing if it cannot be told to stay in there.
   std::optional<Model> Angle(const Model& y, const Model& x) const;
   /// slope * a + offset.
