@@ -83,7 +83,8 @@ PartRecord::Step StepFrom(const nlohmann::json& json) {
 // Throws nlohmann's exceptions.
 PartRecord PartFrom(const nlohmann::json& json) {
   PartRecord part;
-  for (const auto& cut : json.at("path")) part.path.push_back({cut.at(0).get<size_t>(), cut.at(1).get<bool>()});
+  for (const auto& cut : json.at("path"))
+    part.path.push_back({cut.at(0).get<size_t>(), cut.at(1).get<bool>()});
   for (const auto& step : json.at("steps")) part.steps.push_back(StepFrom(step));
   return part;
 }

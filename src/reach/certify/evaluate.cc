@@ -46,7 +46,8 @@ std::optional<std::vector<Model>> Evaluate(const Program& program, const Algebra
         made = algebra.Linear(std::span(program.parts).subspan(c.a, c.b), program.constants[node], models);
         break;
       case CodeOp::kProduct:
-        made = algebra.Product(models[c.a], models[c.b], lower == nullptr ? nullptr : &(*lower)[node]);
+        made = lower == nullptr ? algebra.Product(models[c.a], models[c.b])
+                                : algebra.NextPower(models[c.a], models[c.b], (*lower)[node]);
         break;
       case CodeOp::kReciprocal:
       case CodeOp::kRoot:

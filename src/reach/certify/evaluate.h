@@ -9,7 +9,8 @@ namespace rondo::reach::certify {
 ///
 /// @param variables  models of them.
 /// @param on  the program on a box that holds whatever the variables are.
-/// @param lower  what this was at the limit of t's powers before, if there are no kinks: saves time.
+/// @param lower  what this was at the limit of t's powers before, if there are no kinks: then polynomials are
+/// found fast, but errors are not bounded.
 /// @return nothing if a function is not defined on all of it.
 std::optional<std::vector<Model>> Evaluate(const Program& program, const Algebra& algebra,
                                            const std::vector<Model>& variables, const OnBox& on,

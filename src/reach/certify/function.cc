@@ -152,10 +152,11 @@ std::optional<Model> Algebra::Function(CodeOp function, const Model& a, const Mo
   Model out = Constant(here[series.terms]);
   std::vector<Model> stages;
   for (size_t k = series.terms; k-- > 0;) {
-    out = Product(out, offset, known ? &lower->stages[series.terms - 1 - k] : nullptr);
+    const size_t stage = series.terms - 1 - k;
+    out = known ? NextPower(out, offset, lower->stages[stage]) : Product(out, offset);
     const double constant = here[k].Middle();
     const double before = out.polynomial[0];
-    if (!known || limit_ == 0) out.polynomial[0] = before + constant;
+    if (!known) out.polynomial[0] = before + constant;
     out.error = Up(out.error + Radius(here[k]) + Gamma(1) * (std::fabs(before) + std::fabs(constant)));
     Seal(out);
     if (limit_ < order_) stages.push_back(out);

@@ -148,7 +148,26 @@ double Algebra::CutOff(const Model& a, const Model& b) const {
   return sum;
 }
 
-Model Algebra::Product(const Model& a, const Model& b, const Model* lower) const {
+Model Algebra::NextPower(const Model& a, const Model& b, const Model& lower) const {
+  Model out = Empty();
+  for (size_t m = 0; m < basis_.size(); ++m) {
+    double* to = out.polynomial.data() + m * stride();
+    std::copy_n(lower.polynomial.data() + m * stride(), limit_, to);
+    double sum = 0;
+    for (const Basis::Pair& pair : basis_.Pairs(m)) {
+      const size_t left = a.length[pair.left];
+      if (left == 0 || b.length[pair.right] == 0) continue;
+      const double* x = a.polynomial.data() + pair.left * stride();
+      const double* y = b.polynomial.data() + pair.right * stride();
+      for (size_t p = 0; p < left && p <= limit_; ++p) sum += x[p] * y[limit_ - p];
+    }
+    to[limit_] = sum;
+  }
+  Seal(out);
+  return out;
+}
+
+Model Algebra::Product(const Model& a, const Model& b) const {
   Model out = Empty();
   const size_t powers = limit_ + 1;
   const bool square = &a == &b;
@@ -177,10 +196,8 @@ Model Algebra::Product(const Model& a, const Model& b, const Model* lower) const
       }
     }
     double* sum = out.polynomial.data() + m * stride();
-    const size_t first = lower == nullptr ? 0 : limit_;
-    if (lower != nullptr) std::copy_n(lower->polynomial.data() + m * stride(), first, sum);
     if (factors.empty() && twin == nullptr) continue;
-    for (size_t p = first; p < powers; ++p) {
+    for (size_t p = 0; p < powers; ++p) {
       sum[p] = SumOf(factors, limit_ - p, p + 1) * (square ? 2 : 1);
       for (size_t q = 0; twin != nullptr && q <= p; ++q) sum[p] += twin[q] * twin[p - q];
     }

@@ -43,11 +43,13 @@ class Algebra {
   /// constant + sum of factor * models[node].
   Model Linear(std::span<const LinearPart> parts, const LinearPart& constant,
                const std::vector<Model>& models) const;
-  /// @param lower  the same product at the limit before, if it is known: its powers of t are taken over.
-  Model Product(const Model& a, const Model& b, const Model* lower = nullptr) const;
+  Model Product(const Model& a, const Model& b) const;
+  /// The same, roughly: errors are not bounded. `lower`: what it was at the limit before, of which all powers
+  /// of t are taken over.
+  Model NextPower(const Model& a, const Model& b, const Model& lower) const;
   /// A function of one variable (kReciprocal ... kAtan); nothing if it is not defined everywhere.
   ///
-  /// @param lower  as for products.
+  /// @param lower  what it was at the limit before: then it is found roughly, as by NextPower.
   std::optional<Model> Function(CodeOp function, const Model& a, const Model* lower = nullptr) const;
   /// The angle of (x, y) in (-pi, pi); nothing if it cannot be told to stay in there.
   std::optional<Model> Angle(const Model& y, const Model& x) const;
