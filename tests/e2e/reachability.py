@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """rondo reach beyond its verdicts: refutations replay and damaged ones are refused, pictures, sweeps, tubes of one
-robot that serve others, tubes that are learned, simulators of the user's.
+robot that serve others, certificates, tubes that are learned, simulators of the user's.
 
   reachability.py RONDO
 """
@@ -105,6 +105,58 @@ def reuse(rondo):
     done = run(rondo, "reach", "--json", "--no-cache", ROOT / "examples" / "choreo" / "driven.rondo")
     contracts = json.loads(done.stdout)["contracts"]
     check(done.returncode == 0 and sum("same_as" in c for c in contracts) == 2, f"two of four tubes serve: {done.stdout}")
+    check(all(c["certified"] for c in contracts), f"all are certified: {done.stdout}")
+
+
+def certificates(rondo, folder):
+    def certify(path):
+        return run(rondo, "certify", path)
+
+    model = folder / "groove.rondo"
+    text = (ROOT / "src" / "robot" / "reach" / "testdata" / "contracts" / "proved.rondo").read_text().split("#>")[0]
+    model.write_text(text)
+    done = run(rondo, "reach", "--no-cache", "--contract", "Settle", "--certificates", folder / "proofs", model)
+    written = sorted((folder / "proofs").glob("*.tube.json"))
+    check(done.returncode == 0 and len(written) == 1 and str(written[0]) in done.stdout, f"a file is written: {done.stdout}")
+    done = certify(written[0])
+    check(done.returncode == 0 and "accepted" in done.stdout, f"it is accepted: {done.stdout}{done.stderr}")
+    good = json.loads(written[0].read_text())
+    bad = folder / "bad.tube.json"
+    steps = good["parts"][0]["steps"]
+    damaged = {
+        "no parts": {"parts": []},
+        "half of the initial set": {"parts": [{"path": [[0, True]], "steps": steps}]},
+        "a state that there is none of": {"parts": [{"path": [[99, b]], "steps": steps} for b in (False, True)]},
+        "no steps": {"parts": [{"path": [], "steps": []}]},
+        "steps that are none": {"parts": [{"path": [], "steps": [["x", 1]]}]},
+        "a kind of step that there is none of": {"parts": [{"path": [], "steps": [{"kind": 3}]}]},
+        "another contract": {"contract": "Ball: Nothing()"},
+        "no file": {"files": ["/nowhere.rondo"]},
+        "another format": {"format": "rondo-tube/0"},
+    }
+    for what, change in damaged.items():
+        bad.write_text(json.dumps({**good, **change}))
+        done = certify(bad)
+        check(done.returncode == 1 and "certificate-rejected" in done.stderr, f"{what} is refused: {done.stdout}{done.stderr}")
+    for part in ("{", '{"format": "rondo-tube/1"}', written[0].read_text()[:200]):
+        bad.write_text(part)
+        check(certify(bad).returncode == 1, f"`{part}` is refused")
+    model.write_text(text.replace("during abs(x) < 0.25 m", "during abs(x) < 0.2 m"))
+    done = certify(written[0])
+    check(done.returncode == 1 and "is not shown" in done.stderr, f"a contract that fails is not certified: {done.stderr}")
+    # An event: its time is checked.
+    lift = (ROOT / "src" / "robot" / "reach" / "testdata" / "contracts" / "events.rondo").read_text().split("#>")[0]
+    model.write_text(lift)
+    run(rondo, "reach", "--no-cache", "--certificates", folder / "lift", model)
+    written = next((folder / "lift").glob("*.tube.json"))
+    check(certify(written).returncode == 0, "events are certified")
+    record = json.loads(written.read_text())
+    crossing = next(s for p in record["parts"] for s in p["steps"] if isinstance(s, dict) and s["kind"] == "cross")
+    for key, value in {"event": 7, "length": 1e-6, "together": 1e3, "time": [[[0], -1.0]]}.items():
+        was, crossing[key] = crossing[key], value
+        bad.write_text(json.dumps(record))
+        crossing[key] = was
+        check(certify(bad).returncode == 1, f"an event with another `{key}` is not shown")
 
 
 def samples(rondo, folder):
@@ -159,6 +211,7 @@ def main():
         pictures(rondo, folder)
         sweeps(rondo, folder)
         reuse(rondo)
+        certificates(rondo, folder)
         samples(rondo, folder)
     print(f"{checks[0]} checks passed, {checks[1]} failed")
     return 1 if checks[1] else 0
