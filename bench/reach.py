@@ -5,7 +5,7 @@ usage: bench/reach.py RONDO [--repeat N]
 
 Figures of Flow*, CAPD and Verse: CPU seconds and widths, measured on one machine of two cores (EPYC, Zen 5); those of
 Verse come from eleven runs and enclose nothing. Ours: wall seconds of the decision (reading and checking the file is not
-counted) and the width of the same quantity at the end.
+counted) and the width of the same quantity at the end; then how long the checker took.
 """
 import argparse
 import json
@@ -47,7 +47,7 @@ def main():
     parser.add_argument("rondo")
     parser.add_argument("--repeat", type=int, default=3)
     args = parser.parse_args()
-    print(f"{'benchmark':<34} {'verdict':<8} {'parts':>5} {'seconds':>8} {'bar':>7} {'width':>10} {'bar':>8}  others")
+    print(f"{'benchmark':<34} {'verdict':<8} {'parts':>5} {'seconds':>8} {'bar':>7} {'width':>10} {'bar':>8} {'certified':>9}  others")
     missed = []
     for file, name, quantity, peers, bar, width_bar in ROWS:
         best = None
@@ -61,8 +61,9 @@ def main():
         end = best.get("final", {}).get(quantity)
         width = end[1] - end[0] if end else None
         label = f"{file}: {name}"
+        certified = f"{best['certify_seconds']:.3f}" if best.get("certified") else "no" if "certified" in best else ""
         print(f"{label:<34} {best['verdict']:<8} {best.get('parts', ''):>5} {best['seconds']:>8.4f} "
-              f"{bar if bar else '':>7} {f'{width:.4g}' if width is not None else '':>10} {width_bar if width_bar else '':>8}  {peers}")
+              f"{bar if bar else '':>7} {f'{width:.4g}' if width is not None else '':>10} {width_bar if width_bar else '':>8} {certified:>9}  {peers}")
         if bar and best["seconds"] > bar:
             missed.append(f"{label}: {best['seconds']:.4f} s, bar {bar} s")
         if width_bar and width and width > width_bar * 1.0005:

@@ -58,36 +58,48 @@ nlohmann::json ToJson(const PartRecord::Step& step) {
   return json;
 }
 
-PartRecord::Step StepFrom(const nlohmann::json& json) {
-  PartRecord::Step step;
-  if (json.is_array()) {
-    step.length = json.at(0).get<double>();
-    step.degree = json.at(1).get<size_t>();
+// Reads what SaveTube writes. Throws nlohmann's exceptions, or clears `good`.
+struct Reader {
+  bool good = true;
+
+  size_t Whole(const nlohmann::json& json) {
+    good = good && json.is_number_unsigned();
+    return good ? json.get<size_t>() : 0;
+  }
+
+  PartRecord::Step Step(const nlohmann::json& json) {
+    PartRecord::Step step;
+    if (json.is_array()) {
+      step.length = json.at(0).get<double>();
+      step.degree = Whole(json.at(1));
+      return step;
+    }
+    step.kind = PartRecord::Step::Kind::kOther;
+    for (const auto& [name, kind] : kKinds) {
+      if (json.at("kind") == name) step.kind = kind;
+    }
+    step.length = json.at("length").get<double>();
+    step.degree = Whole(json.at("degree"));
+    if (step.kind == PartRecord::Step::Kind::kSplit) step.symbol = Whole(json.at("symbol"));
+    if (step.kind != PartRecord::Step::Kind::kCross) return step;
+    step.event = Whole(json.at("event"));
+    step.together = json.at("together").get<double>();
+    for (const auto& term : json.at("time")) {
+      auto& [exponents, factor] = step.time.emplace_back();
+      for (const auto& e : term.at(0))
+        exponents.push_back(static_cast<uint32_t>(std::min<size_t>(Whole(e), 255)));
+      factor = term.at(1).get<double>();
+    }
     return step;
   }
-  step.kind = PartRecord::Step::Kind::kOther;
-  for (const auto& [name, kind] : kKinds) {
-    if (json.at("kind") == name) step.kind = kind;
-  }
-  step.length = json.at("length").get<double>();
-  step.degree = json.at("degree").get<size_t>();
-  if (step.kind == PartRecord::Step::Kind::kSplit) step.symbol = json.at("symbol").get<size_t>();
-  if (step.kind == PartRecord::Step::Kind::kCross) {
-    step.event = json.at("event").get<size_t>();
-    step.together = json.at("together").get<double>();
-    json.at("time").get_to(step.time);
-  }
-  return step;
-}
 
-// Throws nlohmann's exceptions.
-PartRecord PartFrom(const nlohmann::json& json) {
-  PartRecord part;
-  for (const auto& cut : json.at("path"))
-    part.path.push_back({cut.at(0).get<size_t>(), cut.at(1).get<bool>()});
-  for (const auto& step : json.at("steps")) part.steps.push_back(StepFrom(step));
-  return part;
-}
+  PartRecord Part(const nlohmann::json& json) {
+    PartRecord part;
+    for (const auto& cut : json.at("path")) part.path.push_back({Whole(cut.at(0)), cut.at(1).get<bool>()});
+    for (const auto& step : json.at("steps")) part.steps.push_back(Step(step));
+    return part;
+  }
+};
 
 }  // namespace
 
@@ -139,11 +151,13 @@ base::Result<TubeFile> ReadTube(std::string_view text) {
   TubeFile file;
   const auto name = ContractFromJson(json);
   if (!name) return base::Error{"it does not say of which contract it is"};
+  Reader reader;
   try {
-    for (const auto& part : json.at("parts")) file.certificate.parts.push_back(PartFrom(part));
+    for (const auto& part : json.at("parts")) file.certificate.parts.push_back(reader.Part(part));
   } catch (const nlohmann::json::exception&) {
-    return base::Error{"its parts are not what they should be"};
+    reader.good = false;
   }
+  if (!reader.good) return base::Error{"its parts are not what they should be"};
   file.files = name->files;
   file.spec = name->spec;
   file.contract = name->contract;

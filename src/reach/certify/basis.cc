@@ -63,6 +63,15 @@ std::optional<size_t> Basis::Find(const std::vector<uint32_t>& exponents) const 
   return it == index_.end() ? std::nullopt : std::optional(it->second);
 }
 
+size_t DegreeWithin(size_t symbols, size_t most_monomials) {
+  // (symbols + degree choose degree)
+  double count = 1;
+  for (size_t degree = 1;; ++degree) {
+    count *= static_cast<double>(symbols + degree) / static_cast<double>(degree);
+    if (count > static_cast<double>(most_monomials) || symbols == 0) return std::max<size_t>(degree, 2) - 1;
+  }
+}
+
 std::shared_ptr<const Basis> Bases::Of(size_t symbols, size_t degree) {
   const std::lock_guard lock(mutex_);
   auto& basis = known_[{symbols, degree}];

@@ -49,6 +49,9 @@ class Basis {
   size_t most_pairs_ = 1;
 };
 
+/// The highest degree, at least 1, of which there are no more than so many monomials.
+size_t DegreeWithin(size_t symbols, size_t most_monomials);
+
 /// Every basis once. Safe for several threads.
 class Bases {
  public:

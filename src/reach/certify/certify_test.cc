@@ -246,7 +246,9 @@ TEST_F(Problems, AreNeverAcceptedWhereTrajectoriesBreakThem) {
     Trajectories run = std::move(made).value();
     double most = -HUGE_VAL;
     for (int sample = 0; sample < 40; ++sample) {
-      const auto end = [&](Interval i) { return sample < 8 ? (random() % 2 == 0 ? i.lo : i.hi) : Uniform(random, i.lo, i.hi); };
+      const auto end = [&](Interval i) {
+        return sample < 8 ? (random() % 2 == 0 ? i.lo : i.hi) : Uniform(random, i.lo, i.hi);
+      };
       Course course{{end(p.initial[0]), end(p.initial[1])}, {}, 0.1};
       for (int k = 0; k < 10; ++k) course.inputs.push_back({end(p.inputs[0].bounds)});
       run.Run(course, 0.01, [&](double, std::span<const double> state) {
@@ -275,11 +277,12 @@ TEST_F(Problems, NeedAllOfTheInitialSet) {
   EXPECT_FALSE(Checked(p, {{lower}}).accepted);
   EXPECT_FALSE(Checked(p, {{lower, lower}}).accepted);
   EXPECT_FALSE(Checked(p, {}).accepted);
-  EXPECT_FALSE(Checked(p, {{lower, {{{0, true}}, {}}}}).accepted);         // no steps
-  EXPECT_FALSE(Checked(p, {{lower, {{{7, true}}, steps}}}).accepted);      // no such state
-  EXPECT_FALSE(Checked(p, {{{{}, steps}, lower, upper}}).accepted);        // a part of a part
+  EXPECT_FALSE(Checked(p, {{lower, {{{0, true}}, {}}}}).accepted);     // no steps
+  EXPECT_FALSE(Checked(p, {{lower, {{{7, true}}, steps}}}).accepted);  // no such state
+  EXPECT_FALSE(Checked(p, {{{{}, steps}, lower, upper}}).accepted);    // a part of a part
   for (const double length : {0.0, -1.0, 1e300, std::nan("")})
-    EXPECT_TRUE(Checked(p, {{{{}, {{.length = length, .degree = 2}, {.length = 0.1, .degree = 2}}}}}).accepted)
+    EXPECT_TRUE(
+        Checked(p, {{{{}, {{.length = length, .degree = 2}, {.length = 0.1, .degree = 2}}}}}).accepted)
         << length;
 }
 
@@ -298,7 +301,8 @@ TEST_F(Problems, MayHoldWithEqualityAtTheStart) {
 // A tank that fills until a switch closes the tap.
 TEST_F(Problems, WithAnEventNeedItsTime) {
   const TermId x = Var("x"), tap = Var("tap");
-  Problem p = Make({x, tap}, {arena_.Ite(arena_.Le(tap, Num(0)), Num(1), Num(-0.5)), Num(0)}, {{0, 0.5}, {0, 0}}, 3);
+  Problem p =
+      Make({x, tap}, {arena_.Ite(arena_.Le(tap, Num(0)), Num(1), Num(-0.5)), Num(0)}, {{0, 0.5}, {0, 0}}, 3);
   p.pinned = {std::nullopt, Rational(0)};
   p.events.push_back({arena_.Le(Num(1), x), {std::nullopt, Num(1)}});
   Always(p, arena_.Le(x, Num(1.001)));

@@ -13,7 +13,10 @@ namespace rondo::reach::certify {
 namespace {
 
 constexpr size_t kMostCuts = 4000;  // one inside the other
-constexpr size_t kMostSplits = 6;   // of a part, one inside the other
+constexpr size_t kLowDegree = 2;
+constexpr size_t kHighDegree = 3;
+constexpr size_t kMostDegree = 20;
+constexpr size_t kMostSplits = 6;  // of a part, one inside the other
 
 // Which half of a box; copies of a state have its bounds.
 interval::Box Half(System& system, interval::Box box, size_t side, bool upper) {
@@ -57,7 +60,16 @@ bool Divide(System& system, const interval::Box& box, std::span<const PartRecord
 // A part that is too wide to be followed here is cut in two.
 std::string CheckPart(System& system, Bases& bases, const Part& part, size_t depth,
                       const base::StopToken& stop, size_t& steps) {
-  Follower follower(system, bases, stop);
+  // Polynomials of a low degree are many times cheaper, and often enough.
+  const bool high =
+      std::ranges::any_of(*part.steps, [](const PartRecord::Step& s) { return s.degree > kHighDegree; });
+  if (high && depth == 0) {
+    Follower cheap(system, bases, kLowDegree, stop);
+    const std::string reason = cheap.Run(part.box, *part.steps);
+    steps += cheap.steps();
+    if (reason.empty() || stop.StopRequested()) return reason;
+  }
+  Follower follower(system, bases, kMostDegree, stop);
   std::string reason = follower.Run(part.box, *part.steps);
   steps += follower.steps();
   if (reason.empty() || depth == kMostSplits || stop.StopRequested()) return reason;

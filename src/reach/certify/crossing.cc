@@ -87,6 +87,7 @@ bool Follower::Move(Place& place, const Pace& whole, const ModeGuard* expected, 
     }
     if (!During(place, seen)) return false;
     place.set = step.end();
+    place.set.Reduce(ReachSet::MostColumns(place.set.states()));
     done += share;
     if (share < kFirstShare && std::fmod(done, 2 * share) == 0) share *= 2;
   }

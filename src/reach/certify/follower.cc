@@ -14,10 +14,11 @@ namespace {
 constexpr size_t kOrder = 9;        // of polynomials in time
 constexpr size_t kPointOrder = 20;  // if the start is a single point
 constexpr double kLeastStep = 1e-10;
-constexpr size_t kMostDegree = 40;
-constexpr Eigen::Index kMostColumns = 100;  // for each state
-constexpr size_t kMostRounds = 32;          // of events at one instant
-constexpr size_t kMostHalves = 1000;        // of symbols
+constexpr double kLeastShare = 1e-5;  // of the horizon, for a step that a record wants
+constexpr size_t kMostSteps = 1'000'000;
+constexpr size_t kMostMonomials = 1000;
+constexpr size_t kMostRounds = 32;    // of events at one instant
+constexpr size_t kMostHalves = 1000;  // of symbols
 
 }  // namespace
 
@@ -46,12 +47,13 @@ Follower::Place Follower::Begin(const interval::Box& box) {
   set.generators.resize(static_cast<Eigen::Index>(n), 0);
   Eigen::VectorXd thin = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
   for (size_t i = 0; i < n; ++i) {
+    const Interval side = box[i < copies.size() && copies[i] ? *copies[i] : i];
     std::vector<double>& p = set.polynomials.emplace_back(set.basis->size(), 0.0);
-    p[0] = box[i].Middle();
+    p[0] = side.Middle();
     if (symbol_[i]) {
-      p[1 + *symbol_[i]] = Radius(box[i]);
+      p[1 + *symbol_[i]] = Radius(side);
     } else {
-      thin[static_cast<Eigen::Index>(i)] = Radius(box[i]);
+      thin[static_cast<Eigen::Index>(i)] = Radius(side);
     }
   }
   set.AddErrors(thin);
@@ -160,13 +162,18 @@ bool Follower::Settle(Place& place) {
 // One thing that the record says; `met` if the next instant is reached. Without a hint: the rest of a step.
 bool Follower::Advance(Place& place, const PartRecord::Step* hint) {
   using Kind = PartRecord::Step::Kind;
-  if (hint != nullptr && hint->degree != place.set.basis->degree() && symbols_ > 0)
-    place.set.SetBasis(bases_.Of(symbols_, std::clamp<size_t>(hint->degree, 1, kMostDegree)));
+  if (hint != nullptr && symbols_ > 0) {
+    const size_t most = std::min(most_degree_, DegreeWithin(symbols_, kMostMonomials));
+    const size_t degree = std::clamp<size_t>(hint->degree, 1, most);
+    if (degree != place.set.basis->degree()) place.set.SetBasis(bases_.Of(symbols_, degree));
+  }
   if (hint != nullptr && hint->kind == Kind::kCross) return Cross(place, *hint);
   if (hint != nullptr && hint->kind == Kind::kOther)
     return Fail("the checker does not follow several modes at once");
   double wanted = hint != nullptr ? hint->length : place.carried;
-  if (!(wanted >= kLeastStep)) wanted = kLeastStep;
+  if (steps_ > kMostSteps) return Fail("too many steps");
+  const double least = kLeastShare * system_.instants().back().ToDouble();
+  if (!(wanted >= least)) wanted = least;
   // The last one ends where the next instant is, not a rounding before it.
   if (wanted > place.left.hi * (1 - 1e-9)) wanted = place.left.hi;
   return TakeStep(place, wanted);
@@ -205,7 +212,7 @@ bool Follower::TakeStep(Place& place, double wanted) {
     place.left = place.left - Interval::Point(taken);
     place.carried = wanted - taken;
   }
-  place.set.Reduce(kMostColumns * static_cast<Eigen::Index>(place.set.states()));
+  place.set.Reduce(ReachSet::MostColumns(place.set.states()));
   return true;
 }
 

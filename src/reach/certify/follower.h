@@ -11,8 +11,9 @@ namespace rondo::reach::certify {
 /// Follows one part of the initial set as its record says, and shows every claim on the way.
 class Follower {
  public:
-  Follower(System& system, Bases& bases, const base::StopToken& stop)
-      : system_(system), bases_(bases), stop_(stop) {}
+  /// @param most_degree  of polynomials in the start, whatever the record says.
+  Follower(System& system, Bases& bases, size_t most_degree, const base::StopToken& stop)
+      : system_(system), bases_(bases), most_degree_(most_degree), stop_(stop) {}
 
   /// Why the claims are not shown; empty if they are.
   std::string Run(const interval::Box& part, const std::vector<PartRecord::Step>& steps);
@@ -53,6 +54,7 @@ class Follower {
 
   System& system_;
   Bases& bases_;
+  size_t most_degree_;
   const base::StopToken& stop_;
   const std::vector<PartRecord::Step>* hints_ = nullptr;
   std::vector<std::optional<size_t>> symbol_;  ///< by state

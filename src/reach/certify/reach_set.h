@@ -15,6 +15,9 @@ struct ReachSet {
   std::vector<std::vector<double>> polynomials;  ///< by state, by monomial
   Eigen::MatrixXd generators;
 
+  /// How many columns are worth their time.
+  static Eigen::Index MostColumns(size_t states) { return 100 * static_cast<Eigen::Index>(states); }
+
   size_t states() const { return polynomials.size(); }
   /// At least how far a member is from its polynomial, by state.
   Eigen::VectorXd Errors() const;

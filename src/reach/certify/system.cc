@@ -11,6 +11,7 @@
 namespace rondo::reach::certify {
 
 base::Result<std::unique_ptr<System>> System::Of(const Problem& problem) {
+  if (!(Rational(0) < problem.horizon)) return base::Error{"it takes no time"};
   auto system = std::make_unique<System>();
   system->problem_ = &problem;
   auto modes = Modes::Of(problem);
