@@ -14,8 +14,7 @@ namespace {
 constexpr size_t kOrder = 9;        // of polynomials in time
 constexpr size_t kPointOrder = 20;  // if the start is a single point
 constexpr double kLeastStep = 1e-10;
-constexpr double kLeastShare = 1e-5;  // of the horizon, for a step that a record wants
-constexpr size_t kMostSteps = 1'000'000;
+constexpr size_t kMostSteps = 300'000;
 constexpr size_t kMostMonomials = 1000;
 constexpr size_t kMostRounds = 32;    // of events at one instant
 constexpr size_t kMostHalves = 1000;  // of symbols
@@ -113,7 +112,7 @@ bool Follower::Follow(Place place) {
     time_ = instants[place.instant].ToDouble();
     if (!AtInstant(place, false)) break;
   }
-  last_ = std::move(place.set);
+  if (steps_ <= kMostSteps) last_ = std::move(place.set);  // else halves would take as many
   return false;
 }
 
@@ -172,8 +171,7 @@ bool Follower::Advance(Place& place, const PartRecord::Step* hint) {
     return Fail("the checker does not follow several modes at once");
   double wanted = hint != nullptr ? hint->length : place.carried;
   if (steps_ > kMostSteps) return Fail("too many steps");
-  const double least = kLeastShare * system_.instants().back().ToDouble();
-  if (!(wanted >= least)) wanted = least;
+  if (!(wanted >= kLeastStep)) wanted = kLeastStep;
   // The last one ends where the next instant is, not a rounding before it.
   if (wanted > place.left.hi * (1 - 1e-9)) wanted = place.left.hi;
   return TakeStep(place, wanted);
