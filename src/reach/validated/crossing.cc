@@ -101,12 +101,19 @@ class Runner::Crossing {
   // How long until all of the set has met the event, if it does so with a definite rate? Which event?
   bool Probe(double until) {
     begin_ = state_.time;
-    // The event may be met later than in the first step: then again, now that it is known.
-    return Probe(until, false) || (guard_ != nullptr && Probe(until, true));
+    // The event may be met later than in the first step: then again, now that it is known; and with steps that
+    // do not reach the next instant before all have met it.
+    if (Probe(until, false, 1) || (guard_ != nullptr && Probe(until, true, 1))) return true;
+    return falls_ && (Probe(until, true, 1.0 / 8) || Probe(until, true, 1.0 / 64));
   }
 
-  bool Probe(double until, bool known) {
-    Flow flow(before_.dynamics, r_.monomials_, r_.OptionsFor(state_.step), r_.stages_.horizon());
+  // `share`: how much of the time until then a step may last.
+  bool Probe(double until, bool known, double share) {
+    FlowOptions options = r_.OptionsFor(state_.step);
+    options.most_step = std::min(options.most_step, share * (until - begin_));
+    options.first_step = std::min(options.first_step, options.most_step);
+    falls_ = false;
+    Flow flow(before_.dynamics, r_.monomials_, options, r_.stages_.horizon());
     flow.Start(state_.set, begin_);
     Map observe(before_.observed, before_.dynamics.states, before_.dynamics.inputs, r_.monomials_);
     least_rate_ = HUGE_VAL;
@@ -123,6 +130,7 @@ class Runner::Crossing {
       known = true;
       const Interval rate = flow.stepper().ObservedRate(guard_->first);
       if (!(rate.hi < 0)) return false;
+      falls_ = true;
       least_rate_ = std::min(least_rate_, -rate.hi);
       window_ = flow.time() - begin_;
       if (all) return flow.time() < until;  // one step more than necessary
@@ -366,6 +374,7 @@ class Runner::Crossing {
   double window_ = 0;  ///< all of the set meets the event within it
   double end_ = 0;
   double least_rate_ = 0;
+  bool falls_ = false;  ///< the term, wherever the event may happen
   Polynomial time_;
   std::optional<size_t> decisive_;
 };
