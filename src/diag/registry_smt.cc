@@ -25,14 +25,16 @@ constexpr KindInfo kTable[] = {
      "dReal. Functions without interpretation, arrays, bit vectors and quantifiers are not part of it.",
      "(declare-fun f (Real) Real)\n(check-sat)\n", "solve"},
     {Kind::kCertificateRejected, "certificate-rejected", Severity::kError,
-     "a step of a certificate that does not follow",
+     "a certificate that does not show what it should",
      "A certificate refutes the assertions above its proof step by step. The checker knows nothing of how it "
-     "was "
-     "found:\n"
-     "it accepts a step only if it can establish it with its own arithmetic. A rejected certificate says "
-     "nothing "
-     "about the\n"
-     "assertions; if `rondo solve` wrote it as it is, that is a bug of Rondo.",
+     "was\n"
+     "found: it accepts a step only if it can establish it with its own arithmetic. A rejected certificate "
+     "says\n"
+     "nothing about the assertions; if `rondo solve` wrote it as it is, that is a bug of Rondo.\n\n"
+     "A certificate of `rondo reach` names a contract and says how its tube was computed. The contract is "
+     "read\n"
+     "from its file again and must be shown as it stands there now; a checker that integrates less sharply\n"
+     "than the prover may fail to show what is true.",
      "(declare-fun x () Real)\n(assert (<= x 1.0))\n(contradiction)\n", "certify"},
 };
 

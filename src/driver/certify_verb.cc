@@ -134,8 +134,9 @@ void AddCertifyVerb(CLI::App& app, int& status) {
       "         rondo certify --of examples/smt/rectangles.smt2 it.cert\n"
       "         rondo reach examples/reach/van_der_pol.rondo --certificates proofs\n"
       "         rondo certify proofs/*.tube.json\n\n"
-      "The checker shares no code with the search: it has normal forms and interval arithmetic (MPFR) of its "
-      "own.\n"
+      "The checkers share no code with the searches. That of refutations has normal forms and interval "
+      "arithmetic (MPFR)\nof its own; that of contracts reads them from their files again, and integrates "
+      "in another way.\n"
       "exit status: 0 every certificate is accepted, 1 one is not, 3 interrupted");
   verb->callback([options, &status] { status = Run(*options); });
 }

@@ -25,7 +25,6 @@ class Basis {
   size_t DegreeOf(size_t monomial) const { return degree_of_[monomial]; }
   /// Are all exponents even? Then it is never negative.
   bool IsEven(size_t monomial) const { return even_[monomial] != 0; }
-  size_t symbols() const { return symbols_; }
   /// The monomial with these exponents, by symbol, if its degree is not too high.
   std::optional<size_t> Find(const std::vector<uint32_t>& exponents) const;
   /// By symbol.

@@ -216,7 +216,7 @@ TEST_F(Problems, AreNeverAcceptedWhereTrajectoriesBreakThem) {
   std::mt19937_64 random(11);
   const TermId x = Var("x"), y = Var("y"), w = Var("w");
   int accepted = 0;
-  for (int round = 0; round < 18; ++round) {
+  for (int round = 0; round < 10; ++round) {
     const auto c = [&] { return Num(std::ldexp(std::round(Uniform(random, -1, 1) * 64), -6)); };
     const TermId parts[] = {x,
                             y,
@@ -262,7 +262,7 @@ TEST_F(Problems, AreNeverAcceptedWhereTrajectoriesBreakThem) {
     Always(p, arena_.Le(seen, Num(most + 0.5)));
     accepted += Checked(p, Even(0.02)).accepted ? 1 : 0;
   }
-  EXPECT_GE(accepted, 16);
+  EXPECT_GE(accepted, 8);
 }
 
 TEST_F(Problems, NeedAllOfTheInitialSet) {

@@ -39,7 +39,7 @@ struct Transition {
   MatrixXd end;       // M(1)
   MatrixXd most;      // at least |M(t)|
   MatrixXd residual;  // at least |centre M(t) - M'(t)|
-  double terms_ = 0;
+  double terms = 0;
 };
 Transition PolynomialOf(const MatrixXd& centre) {
   const Index n = centre.rows();
@@ -50,7 +50,7 @@ Transition PolynomialOf(const MatrixXd& centre) {
   t.end = t.most = term;
   t.residual = MatrixXd::Zero(n, n);
   for (int k = 0; k < kMostTerms; ++k) {
-    ++t.terms_;
+    ++t.terms;
     const MatrixXd product = centre * term;
     const bool last = k + 1 == kMostTerms || Norm(product) < 1e-19;
     const MatrixXd sizes = size * term.cwiseAbs();
@@ -105,7 +105,7 @@ bool PropagateErrors(const ErrorRates& rates, const MatrixXd& generators, const 
     const VectorXd rest = Grown(grows, UpAll(pushed));
     out.most = out.most.cwiseMax(UpAll(t.most * before + rest));
     const MatrixXd next = t.end * out.generators;
-    const double gamma = Gamma(static_cast<double>(n) + 2 * t.terms_ + 4);
+    const double gamma = Gamma(static_cast<double>(n) + 2 * t.terms + 4);
     const VectorXd errors = UpAll(rest + gamma * (t.most * before));
     out.added += errors;
     const Index old = next.cols();

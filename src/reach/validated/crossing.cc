@@ -101,8 +101,8 @@ class Runner::Crossing {
   // How long until all of the set has met the event, if it does so with a definite rate? Which event?
   bool Probe(double until) {
     begin_ = state_.time;
-    // The event may be met later than in the first step: then again, now that it is known; and with steps that
-    // do not reach the next instant before all have met it.
+    // The event may be met later than in the first step: then again, now that it is known; and with steps
+    // that do not reach the next instant before all have met it.
     if (Probe(until, false, 1) || (guard_ != nullptr && Probe(until, true, 1))) return true;
     return falls_ && (Probe(until, true, 1.0 / 8) || Probe(until, true, 1.0 / 64));
   }
