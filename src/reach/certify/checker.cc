@@ -65,7 +65,7 @@ std::string CheckPart(System& system, Bases& bases, const Part& part, size_t dep
       std::ranges::any_of(*part.steps, [](const PartRecord::Step& s) { return s.degree > kHighDegree; });
   if (high && depth == 0) {
     Follower cheap(system, bases, kLowDegree, stop);
-    const std::string reason = cheap.Run(part.box, *part.steps);
+    std::string reason = cheap.Run(part.box, *part.steps);
     steps += cheap.steps();
     if (reason.empty() || stop.StopRequested()) return reason;
   }

@@ -90,7 +90,8 @@ bool PropagateErrors(const ErrorRates& rates, const MatrixXd& generators, const 
   out.generators = generators;
   out.most = VectorXd::Zero(n);
   out.added = VectorXd::Zero(n);
-  for (double piece = 0; piece < pieces; ++piece) {
+  for (size_t index = 0; index < static_cast<size_t>(pieces); ++index) {
+    const auto piece = static_cast<double>(index);
     const VectorXd before = UpAll(out.generators.cwiseAbs().rowwise().sum());
     // The integral of the push over this piece, [piece, piece + 1] / pieces, a little enlarged.
     VectorXd pushed = residual * before;

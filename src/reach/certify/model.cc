@@ -188,7 +188,7 @@ Model Algebra::Product(const Model& a, const Model& b) const {
     for (const Basis::Pair& pair : basis_.Pairs(m)) {
       if (a.length[pair.left] == 0 || b.length[pair.right] == 0) continue;
       if (square && pair.left > pair.right) continue;
-      const Factors f{ascending.data() + pair.left * row, descending.data() + pair.right * 2 * row};
+      const Factors f{ascending.data() + pair.left * row, descending.data() + pair.right * (2 * row)};
       if (square && pair.left == pair.right) {
         twin = f.left;
       } else {

@@ -93,8 +93,11 @@ base::Result<std::shared_ptr<const ModeSystem>> System::Make(const Mode& mode) {
   const auto compile = [&](std::vector<TermId> functions, bool in_mode, Program& out) {
     for (TermId& f : functions) f = in_mode ? modes_.In(mode, f) : f;
     auto made = Compile(arena, variables, functions);
-    if (made.ok()) out = std::move(made).value();
-    if (!made.ok() && wrong.empty()) wrong = made.error().message;
+    if (!made.ok()) {
+      wrong = made.error().message;
+    } else {
+      out = std::move(made).value();
+    }
   };
   system->dynamics.states = problem.states.size();
   compile(problem.rates, true, system->dynamics.rates);

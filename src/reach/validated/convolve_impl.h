@@ -17,7 +17,7 @@ constexpr size_t kNative = 2;
 #endif
 constexpr size_t kParts = kWidth / kNative;
 
-typedef double Lanes __attribute__((vector_size(kNative * sizeof(double))));
+using Lanes __attribute__((vector_size(kNative * sizeof(double)))) = double;
 
 // Eight sums. Vectors are not passed by value: how depends on the instruction set.
 struct Sums {
