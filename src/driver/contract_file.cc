@@ -3,19 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "driver/run_file.h"
+
 namespace rondo::driver {
-
-namespace {
-
-std::string Absolute(const std::string& file) {
-  std::error_code ignored;
-  return file.empty() ? file : std::filesystem::absolute(file, ignored).lexically_normal().string();
-}
-
-}  // namespace
 
 nlohmann::json ContractToJson(const char* format, const ContractName& name) {
   nlohmann::json files = nlohmann::json::array();
@@ -37,8 +29,7 @@ std::optional<ContractName> ContractFromJson(const nlohmann::json& json) {
   return name;
 }
 
-bool HasFormat(std::string_view text, const char* format) {
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+bool HasFormat(const nlohmann::json& json, const char* format) {
   return json.is_object() && json.value("format", nlohmann::json()) == format;
 }
 

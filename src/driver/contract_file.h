@@ -3,7 +3,6 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -22,8 +21,8 @@ struct ContractName {
 nlohmann::json ContractToJson(const char* format, const ContractName& name);
 /// Nothing if something is missing.
 std::optional<ContractName> ContractFromJson(const nlohmann::json& json);
-/// Is this JSON with that `format`?
-bool HasFormat(std::string_view text, const char* format);
+/// Is this an object with that `format`?
+bool HasFormat(const nlohmann::json& json, const char* format);
 
 /// Reads the files and finds the contract.
 ///

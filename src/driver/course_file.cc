@@ -28,7 +28,9 @@ base::Result<bool> SaveCourse(const std::string& path, const CourseFile& file) {
                                    json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
-bool IsCourse(std::string_view text) { return HasFormat(text, kFormat); }
+bool IsCourse(std::string_view text) {
+  return HasFormat(nlohmann::json::parse(text, nullptr, false), kFormat);
+}
 
 base::Result<CourseFile> ReadCourse(std::string_view text) {
   const auto json = nlohmann::json::parse(text, nullptr, false);

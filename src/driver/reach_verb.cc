@@ -198,14 +198,14 @@ class Run {
     if (VerdictOf(r) == "proved" && !options_.no_certify && !stop_.cancelled()) {
       line.Show(fmt::format("[{}/{}] {}: certifying", index + 1, loaded_.results.size(), name));
       CertifyContract(r, certificate, options_.jobs, stop_);
-      if (r.IsCertified() && !options_.certificates.empty()) SaveCertificate(index, std::move(certificate));
+      if (r.IsCertified() && !options_.certificates.empty()) SaveCertificate(index, certificate);
     }
     StoreProved(r, cache_);
-    if (index + 1 < loaded_.results.size()) reuse_.Remember(r);
+    if (index + 1 < loaded_.results.size()) reuse_.Remember(r, std::move(certificate));
     Keep(index);
   }
 
-  void SaveCertificate(size_t index, reach::certify::Certificate certificate) {
+  void SaveCertificate(size_t index, const reach::certify::Certificate& certificate) {
     const ContractResult& r = loaded_.results[index];
     std::filesystem::path path =
         std::filesystem::path(options_.certificates) / (FileName(r.made.problem.name) + ".tube.json");
@@ -214,7 +214,7 @@ class Run {
     std::error_code ignored;
     std::filesystem::create_directories(path.parent_path(), ignored);
     const auto written =
-        SaveTube(path.string(), {options_.files, options_.spec, r.made.problem.name, std::move(certificate)});
+        SaveTube(path.string(), {options_.files, options_.spec, r.made.problem.name, certificate});
     if (written.ok()) {
       certificates_.push_back(path.string());
     } else {

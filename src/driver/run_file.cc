@@ -17,6 +17,11 @@ std::string FileName(std::string text) {
   return text;
 }
 
+std::string Absolute(const std::string& file) {
+  std::error_code ignored;
+  return file.empty() ? file : std::filesystem::absolute(file, ignored).lexically_normal().string();
+}
+
 std::string DefaultRunFile(const std::string& program, const std::string& property) {
   const std::filesystem::path folder = solve::cache::ProofCache::DefaultFolder().parent_path() / "runs";
   const std::string name = FileName(std::filesystem::path(program).stem().string() + "-" + property);
@@ -64,14 +69,9 @@ void AdoptParameters(const RunFile& run, const koord::Model& model, koord::seman
 }
 
 base::Result<bool> SaveRun(const std::string& path, const RunFile& run) {
-  std::error_code ignored;
-  const auto absolute = [&](const std::string& file) {
-    return file.empty() ? std::string()
-                        : std::filesystem::absolute(file, ignored).lexically_normal().string();
-  };
   const nlohmann::json file{
-      {"format", "rondo-run/1"},    {"engine", run.engine},   {"program", absolute(run.program)},
-      {"spec", absolute(run.spec)}, {"robots", run.robots},   {"breaks", run.property},
+      {"format", "rondo-run/1"},    {"engine", run.engine},   {"program", Absolute(run.program)},
+      {"spec", Absolute(run.spec)}, {"robots", run.robots},   {"breaks", run.property},
       {"params", run.params},       {"choices", run.choices}, {"steps", run.steps}};
   return base::WriteFileAtomically(path,
                                    file.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");

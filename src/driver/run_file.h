@@ -28,6 +28,8 @@ void KeepParameters(RunFile& run, const koord::Model& model, const koord::semant
 
 /// The text as the name of a file: letters, digits, `-` and `_`.
 std::string FileName(std::string text);
+/// The absolute path of a file; nothing of nothing.
+std::string Absolute(const std::string& file);
 /// Where runs go unless the user says where: a folder for cached data.
 std::string DefaultRunFile(const std::string& program, const std::string& property);
 

@@ -146,8 +146,8 @@ bool IsTube(std::string_view text) {
 }
 
 base::Result<TubeFile> ReadTube(std::string_view text) {
-  if (!HasFormat(text, kFormat)) return base::Error{fmt::format("this is no JSON of the format {}", kFormat)};
   const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!HasFormat(json, kFormat)) return base::Error{fmt::format("this is no JSON of the format {}", kFormat)};
   TubeFile file;
   const auto name = ContractFromJson(json);
   if (!name) return base::Error{"it does not say of which contract it is"};

@@ -1,6 +1,5 @@
 #include "driver/tube_reuse.h"
 
-#include "driver/tube_certificate.h"
 #include "reach/system/bounds.h"
 #include "reach/system/centred.h"
 #include "reach/system/text.h"
@@ -56,12 +55,12 @@ std::string TubeReuse::Covers(const ContractResult& contract,
   return it->second.contract;
 }
 
-void TubeReuse::Remember(const ContractResult& contract) {
+void TubeReuse::Remember(const ContractResult& contract, reach::certify::Certificate certificate) {
   if (!contract.outcome) return;
   const auto* proved = std::get_if<reach::Proved>(&*contract.outcome);
   if (proved == nullptr) return;
   const reach::CentredProblem centred = reach::Centred(contract.made.problem);
-  Tube tube{contract.made.problem.name, proved->leaves, CertificateOf(*proved), {}};
+  Tube tube{contract.made.problem.name, proved->leaves, std::move(certificate), {}};
   const auto move = [&](interval::Box& box) {
     for (size_t i = 0; i < box.size(); ++i) box[i] = box[i] - reach::Enclose(centred.origin[i]);
   };

@@ -16,7 +16,7 @@ class TubeReuse {
   /// The contract whose tube shows that this one is kept, and its certificate; empty if there is none.
   std::string Covers(const ContractResult& contract, reach::certify::Certificate& certificate) const;
   /// Keeps what is proved.
-  void Remember(const ContractResult& contract);
+  void Remember(const ContractResult& contract, reach::certify::Certificate certificate);
 
  private:
   struct Tube {

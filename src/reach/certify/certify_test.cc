@@ -42,8 +42,7 @@ TEST(TaylorCoefficients, OfTheArctangentAreBounded) {
   for (const double x : {-3.0, -0.4, 0.0, 1.0, 7.0}) {
     ASSERT_TRUE(TaylorCoefficients(CodeOp::kAtan, Interval::Point(x), out));
     for (size_t k = 1; k < 9; ++k)
-      EXPECT_LE(std::fabs(out[k].Middle()),
-                CoefficientBound(CodeOp::kAtan, {x - 0.5, x + 0.5}, k) * (1 + 1e-12));
+      EXPECT_LE(std::fabs(out[k].Middle()), ArctangentBound({x - 0.5, x + 0.5}, k) * (1 + 1e-12));
   }
 }
 

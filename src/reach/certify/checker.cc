@@ -1,12 +1,9 @@
 #include "reach/certify/checker.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "base/parallel.h"
 #include "reach/certify/follower.h"
-#include "reach/system/bounds.h"
 
 namespace rondo::reach::certify {
 

@@ -2,8 +2,6 @@
 #include <cmath>
 
 #include "reach/certify/follower.h"
-#include "reach/certify/observation.h"
-#include "reach/system/bounds.h"
 
 namespace rondo::reach::certify {
 
@@ -144,17 +142,11 @@ bool Follower::Switch(Place& place, const ModeGuard& guard, double slope) {
   }
   if (!inside) return Fail("an event is not met transversally");
   // What holds meanwhile.
-  const auto by = [&](double time, const interval::Box& speed) {
-    Eigen::VectorXd v(static_cast<Eigen::Index>(n));
-    for (size_t i = 0; i < n; ++i)
-      v[static_cast<Eigen::Index>(i)] = time > 0 ? Up(time * Magnitude(speed[i])) : 0;
-    return v;
-  };
   ReachSet around = place.set;
-  around.AddErrors(by(2 * late, rates));
+  around.AddErrors(DistanceIn(2 * late, rates));
   if (!HoldsAround(place, before, around, &guard) || !HoldsAround(place, after, around, nullptr))
     return false;
-  place.set.AddErrors(by(late, jumps));
+  place.set.AddErrors(DistanceIn(late, jumps));
   return Enter(place, after.mode);
 }
 
@@ -168,10 +160,8 @@ bool Follower::HoldsAround(const Place& place, const ModeSystem& in, const Reach
     const Truth truth = guard.formula.Check([&](size_t atom) { return range(guard.first + atom); });
     if (&guard != expected && truth != Truth::kFalse) return Fail("another event may happen");
   }
-  const Rational& from = system_.instants()[place.instant];
-  const Rational& to = system_.instants()[place.instant + 1];
   for (const ModeClaim& claim : in.claims) {
-    if (to <= claim.claim->from || claim.claim->to <= from) continue;
+    if (!IsDue(place, claim)) continue;
     const Truth truth = claim.formula.Check([&](size_t atom) {
       return claim.implied[atom] ? AtMostZero(range(claim.first + atom)) : range(claim.first + atom);
     });

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reach/certify/observation.h"
-
 namespace rondo::reach::certify {
 
 namespace {
@@ -199,11 +197,7 @@ bool Follower::TakeStep(Place& place, double wanted) {
   place.set = step.end();
   if (taken == place.left.hi) {
     // It lasted `left`, of which the upper end was taken.
-    const double late = Up(place.left.Width());
-    Eigen::VectorXd more(static_cast<Eigen::Index>(place.set.states()));
-    for (size_t i = 0; i < place.set.states(); ++i)
-      more[static_cast<Eigen::Index>(i)] = place.left.IsPoint() ? 0 : Up(late * Magnitude(step.rates()[i]));
-    place.set.AddErrors(more);
+    if (!place.left.IsPoint()) place.set.AddErrors(DistanceIn(Up(place.left.Width()), step.rates()));
     place.met = true;
     place.carried = 0;
   } else {
@@ -244,13 +238,17 @@ bool Follower::AtInstant(const Place& place, bool start) {
   return true;
 }
 
-// All claims that must hold between the last instant and the next one.
-bool Follower::During(const Place& place, Observation& seen) {
+// Must the claim hold between the last instant and the next one?
+bool Follower::IsDue(const Place& place, const ModeClaim& claim) const {
   const Rational& from = system_.instants()[place.instant];
   const Rational& to = system_.instants()[place.instant + 1];
+  return claim.claim->from < to && from < claim.claim->to;
+}
+
+bool Follower::During(const Place& place, Observation& seen) {
   for (size_t c = 0; c < place.in->claims.size(); ++c) {
     const ModeClaim& claim = place.in->claims[c];
-    if (to <= claim.claim->from || claim.claim->to <= from) continue;
+    if (!IsDue(place, claim)) continue;
     std::vector<bool> below = claim.implied;
     for (size_t k = 0; k < below.size(); ++k) below[k] = below[k] || place.falls[c][k];
     if (!seen.Holds(claim, below)) return Fail(fmt::format("`{}` is not shown", claim.claim->name));

@@ -45,6 +45,7 @@ class Follower {
   bool AtInstant(const Place& place, bool start);
   bool Fail(std::string reason);
 
+  bool IsDue(const Place& place, const ModeClaim& claim) const;
   bool During(const Place& place, Observation& seen);
 
   bool Cross(Place& place, const PartRecord::Step& record);

@@ -77,14 +77,10 @@ bool TaylorCoefficients(CodeOp function, Interval at, std::span<Interval> out) {
   }
 }
 
-double CoefficientBound(CodeOp function, Interval at, size_t k) {
-  if (function == CodeOp::kAtan) {
-    // |sin(k (pi/2 - a)) cos(a)^k| / k, a = atan x: at most (1 + x^2)^(-k/2) / k.
-    const double least = at.Contains(0.0) ? 0 : std::fmin(std::fabs(at.lo), std::fabs(at.hi));
-    return Up(std::pow(1 + least * least, -0.5 * static_cast<double>(k)) / static_cast<double>(k));
-  }
-  std::vector<Interval> all(k + 1);
-  return TaylorCoefficients(function, at, all) ? Magnitude(all[k]) : HUGE_VAL;
+double ArctangentBound(Interval at, size_t k) {
+  // |sin(k (pi/2 - a)) cos(a)^k| / k, a = atan x: at most (1 + x^2)^(-k/2) / k.
+  const double least = at.Contains(0.0) ? 0 : std::fmin(std::fabs(at.lo), std::fabs(at.hi));
+  return Up(std::pow(1 + least * least, -0.5 * static_cast<double>(k)) / static_cast<double>(k));
 }
 
 namespace {
@@ -103,7 +99,7 @@ Series Shorten(CodeOp function, Interval range, std::span<const Interval> everyw
   for (size_t k = 1; k + 1 < everywhere.size(); ++k) {
     power = Up(power * radius);
     const double bound =
-        function == CodeOp::kAtan ? CoefficientBound(function, range, k + 1) : Magnitude(everywhere[k + 1]);
+        function == CodeOp::kAtan ? ArctangentBound(range, k + 1) : Magnitude(everywhere[k + 1]);
     const double own = Up(bound * power);
     if (own < series.rest) series = {k, own};
     if (series.rest <= enough || own > 1e3 * series.rest) break;

@@ -76,7 +76,7 @@ class Algebra {
 /// Encloses g^(k)(x) / k! for every x in `at`, for k = 0 .. out.size() - 1. False if the function is not
 /// smooth on all of `at`.
 bool TaylorCoefficients(CodeOp function, Interval at, std::span<Interval> out);
-/// At least |g^(k)(x) / k!| for every x in `at`, k >= 1, where TaylorCoefficients is defined.
-double CoefficientBound(CodeOp function, Interval at, size_t k);
+/// At least |g^(k)(x) / k!| for every x in `at`, k >= 1, g the arctangent: sharper than TaylorCoefficients.
+double ArctangentBound(Interval at, size_t k);
 
 }  // namespace rondo::reach::certify

@@ -101,4 +101,11 @@ interval::Box ReachSet::Box() const {
   return box;
 }
 
+Eigen::VectorXd DistanceIn(double seconds, const interval::Box& rates) {
+  Eigen::VectorXd far = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rates.size()));
+  for (size_t i = 0; i < rates.size() && seconds > 0; ++i)
+    far[static_cast<Eigen::Index>(i)] = Up(seconds * Magnitude(rates[i]));
+  return far;
+}
+
 }  // namespace rondo::reach::certify

@@ -36,4 +36,7 @@ struct ReachSet {
   interval::Box Box() const;
 };
 
+/// At least how far each state gets in this time.
+Eigen::VectorXd DistanceIn(double seconds, const interval::Box& rates);
+
 }  // namespace rondo::reach::certify

@@ -1,7 +1,5 @@
 #include "reach/certify/system.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <set>
 
