@@ -5,12 +5,15 @@
 A header line reads `# expect: proved ...`, `# expect: refuted ...` or `# expect: ... not inductive ...`.
 """
 import json
+import os
 import pathlib
 import re
 import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+# Mutants that take a minute each with sanitizers, and fail as the others of delivery do: for `./dev nightly`.
+SLOW = {"delivery_drift", "delivery_margin", "delivery_no_atomic", "delivery_no_start", "delivery_no_summary"}
 
 
 def prove(rondo, *args):
@@ -64,6 +67,8 @@ def main():
         check(f"mutex_naive for {robots}", status == wanted, f"status {status}")
 
     for path in sorted((ROOT / "tests/mutants").glob("*.koord")):
+        if path.stem in SLOW and "RONDO_CASES" not in os.environ:
+            continue
         status, report = prove(rondo, str(path))
         got = verdicts(report)
         errors = [d for d in report["diagnostics"] if d["severity"] == "error"]
