@@ -1,6 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "driver/command.h"
 #include "driver/exit_status.h"
 #include "driver/load.h"
 #include "driver/terminal.h"
@@ -16,12 +16,12 @@ void AddAstVerb(CLI::App& app, int& status) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("ast", "show how a Koord program is read");
-  verb->add_option("FILE", options->file, "a program or specification")->required();
-  verb->add_flag("--json", options->json,
-                 "the syntax tree as JSON; otherwise the canonical text without comments");
-  verb->footer("example: rondo ast --json examples/koord/lineform.koord");
-  verb->callback([options, &status] {
+  Command verb(app, "ast", "show how a Koord program is read");
+  verb.Option("FILE", options->file, "a program or specification").Required();
+  verb.Flag("--json", options->json,
+            "the syntax tree as JSON; otherwise the canonical text without comments");
+  verb.Footer("example: rondo ast --json examples/koord/lineform.koord");
+  verb.Run([options, &status] {
     Session session;
     const auto program = Load({options->file, {}, false}, session);
     if (!program || session.diagnostics.has_errors()) {

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "driver/command.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
 #include "driver/load.h"
@@ -122,14 +122,14 @@ int Run(const Options& options) {
 
 void AddCertifyVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand(
-      "certify", "check certificates: of `rondo solve --cert`, `rondo prove` and `rondo reach`");
-  verb->add_option("FILE", options->files,
-                   "certificates: a script and its refutation, or a contract and how it was proved")
-      ->required();
-  verb->add_option("--of", options->script, "the script that the certificate should be about");
-  verb->add_flag("--json", options->json, "the result as JSON on standard output");
-  verb->footer(
+  Command verb(app, "certify",
+               "check certificates: of `rondo solve --cert`, `rondo prove` and `rondo reach`");
+  verb.Option("FILE", options->files,
+              "certificates: a script and its refutation, or a contract and how it was proved")
+      .Required();
+  verb.Option("--of", options->script, "the script that the certificate should be about");
+  verb.Flag("--json", options->json, "the result as JSON on standard output");
+  verb.Footer(
       "example: rondo solve --cert it.cert examples/smt/rectangles.smt2\n"
       "         rondo certify --of examples/smt/rectangles.smt2 it.cert\n"
       "         rondo reach examples/reach/van_der_pol.rondo --certificates proofs\n"
@@ -138,7 +138,7 @@ void AddCertifyVerb(CLI::App& app, int& status) {
       "arithmetic (MPFR)\nof its own; that of contracts reads them from their files again, and integrates "
       "in another way.\n"
       "exit status: 0 every certificate is accepted, 1 one is not, 3 interrupted");
-  verb->callback([options, &status] { status = Run(*options); });
+  verb.Run([options, &status] { status = Run(*options); });
 }
 
 }  // namespace rondo::driver

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "driver/command.h"
 #include "driver/exit_status.h"
 #include "driver/load.h"
 #include "driver/motion.h"
@@ -55,25 +55,24 @@ int Run(const Options& options) {
 
 void AddCheckVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb =
-      app.add_subcommand("check", "report every error and warning of programs and choreographies");
-  verb->add_option(
+  Command verb(app, "check", "report every error and warning of programs and choreographies");
+  verb.Option(
           "FILE", options->files,
           "Koord programs (`NAME.spec` beside one belongs to it); robots and choreographies (`.rondo`), and "
           "the "
           "original choreographies (`.chor`) and programs (`ROBOT.rosl`) about the world of a `.rondo` file "
           "before them")
-      ->required();
-  verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
-  verb->add_option("--option", options->admitted,
-                   "an option for every choreography, as if it were written there: `equal_durations`")
-      ->allow_extra_args(false);
-  verb->add_flag("--json", options->json, "the diagnostics as JSON on standard output");
-  verb->footer(
+      .Required();
+  verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
+  verb.Option("--option", options->admitted,
+              "an option for every choreography, as if it were written there: `equal_durations`")
+      .OneEach();
+  verb.Flag("--json", options->json, "the diagnostics as JSON on standard output");
+  verb.Footer(
       "example: rondo check examples/koord/delivery.koord\n"
       "         rondo check examples/choreo/handover.rondo\n"
       "         rondo check world.rondo fetch.chor arm.rosl cart.rosl --option equal_durations");
-  verb->callback([options, &status] { status = Run(*options); });
+  verb.Run([options, &status] { status = Run(*options); });
 }
 
 }  // namespace rondo::driver

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "driver/command.h"
 #include "driver/exit_status.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
@@ -65,12 +66,10 @@ std::string Fish(const CLI::App& app) {
 
 void AddCompletionVerb(CLI::App& app, int& status) {
   auto shell = std::make_shared<std::string>();
-  CLI::App* verb = app.add_subcommand("completion", "print a completion script for a shell");
-  verb->add_option("SHELL", *shell, "bash, zsh or fish")
-      ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
-  verb->footer("example: source <(rondo completion bash)");
-  verb->callback([shell, &app, &status] {
+  Command verb(app, "completion", "print a completion script for a shell");
+  verb.Option("SHELL", *shell, "bash, zsh or fish").Required().OneOf({"bash", "zsh", "fish"});
+  verb.Footer("example: source <(rondo completion bash)");
+  verb.Run([shell, &app, &status] {
     status = kEstablished;
     if (*shell == "fish") return Print(Fish(app));
     Print((*shell == "zsh" ? "autoload -U +X bashcompinit && bashcompinit\n" : "") + Bash(app));

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "driver/command.h"
 #include "driver/exit_status.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
@@ -52,12 +52,12 @@ void AddExplainVerb(CLI::App& app, int& status) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("explain", "what a diagnostic means, with an example");
-  verb->add_option("KIND", options->kind,
-                   "the name in brackets, such as koord-not-inductive; without it: all of them");
-  verb->add_flag("--json", options->json, "as JSON");
-  verb->footer("example: rondo explain koord-lost-update");
-  verb->callback([options, &status] {
+  Command verb(app, "explain", "what a diagnostic means, with an example");
+  verb.Option("KIND", options->kind,
+              "the name in brackets, such as koord-not-inductive; without it: all of them");
+  verb.Flag("--json", options->json, "as JSON");
+  verb.Footer("example: rondo explain koord-lost-update");
+  verb.Run([options, &status] {
     if (!options->kind.empty()) {
       status = Explain(options->kind, options->json);
       return;

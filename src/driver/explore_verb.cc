@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "driver/command.h"
 #include "driver/exit_status.h"
 #include "driver/exploration.h"
 #include "driver/interrupt.h"
@@ -221,37 +221,35 @@ int Run(const Options& options) {
 
 void AddExploreVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("explore", "visit every state that a small team can reach");
-  verb->add_option("FILE", options->file, "a Koord program; `NAME.spec` beside it belongs to it")->required();
-  verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
-  verb->add_option("--robots", options->robots,
-                   "team sizes, such as `--robots 2 3`; default: what `explore` declares, or 1 2 3")
-      ->check(CLI::Range(size_t{1}, size_t{64}));
-  verb->add_option("--depth", options->depth, "explore no more than so many rounds")
-      ->check(CLI::Range(1U, 1'000'000'000U));
-  verb->add_option("--states", options->states, "give up beyond so many states; default: 100000000")
-      ->check(CLI::Range(uint64_t{1}, uint64_t{4'000'000'000}));
-  verb->add_flag("--deadlock", options->deadlock, "look for states in which nothing can happen any more");
-  verb->add_flag("--no-symmetry", options->no_symmetry,
-                 "count states that differ in the names of robots apart");
-  verb->add_flag("--no-reduction", options->no_reduction,
-                 "every order of the robots, one after the other (slow: to check the explorer)");
-  verb->add_flag("--compact", options->compact,
-                 "keep 64 bits of each state: less memory, but two states may be taken for one");
-  verb->add_option("--walks", options->walks, "so many random walks instead of all states");
-  verb->add_option("--steps", options->steps, "length of a random walk; default: 1000");
-  verb->add_option("--seed", options->seed, "of the random walks; default: 1");
-  verb->add_option("--save", options->save, "where to write the run that breaks a property");
-  verb->add_option("--trace", options->trace, "write that run as a trace (MCAP), too");
-  verb->add_flag("--json", options->json, "the result as JSON on standard output");
-  verb->footer(
+  Command verb(app, "explore", "visit every state that a small team can reach");
+  verb.Option("FILE", options->file, "a Koord program; `NAME.spec` beside it belongs to it").Required();
+  verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
+  verb.Option("--robots", options->robots,
+              "team sizes, such as `--robots 2 3`; default: what `explore` declares, or 1 2 3")
+      .Between(size_t{1}, size_t{64});
+  verb.Option("--depth", options->depth, "explore no more than so many rounds").Between(1U, 1'000'000'000U);
+  verb.Option("--states", options->states, "give up beyond so many states; default: 100000000")
+      .Between(uint64_t{1}, uint64_t{4'000'000'000});
+  verb.Flag("--deadlock", options->deadlock, "look for states in which nothing can happen any more");
+  verb.Flag("--no-symmetry", options->no_symmetry, "count states that differ in the names of robots apart");
+  verb.Flag("--no-reduction", options->no_reduction,
+            "every order of the robots, one after the other (slow: to check the explorer)");
+  verb.Flag("--compact", options->compact,
+            "keep 64 bits of each state: less memory, but two states may be taken for one");
+  verb.Option("--walks", options->walks, "so many random walks instead of all states");
+  verb.Option("--steps", options->steps, "length of a random walk; default: 1000");
+  verb.Option("--seed", options->seed, "of the random walks; default: 1");
+  verb.Option("--save", options->save, "where to write the run that breaks a property");
+  verb.Option("--trace", options->trace, "write that run as a trace (MCAP), too");
+  verb.Flag("--json", options->json, "the result as JSON on standard output");
+  verb.Footer(
       "examples:\n  rondo explore examples/koord/leader.koord --robots 8\n"
       "  rondo explore examples/koord/mutex_naive.koord\n"
       "  rondo explore --walks 100 --seed 7 examples/koord/addnums.koord\n\n"
       "The `explore` section of the specification gives parameters, sensors and external functions values "
       "(docs/language.md).\n"
       "exit status: 0 no property is broken, 1 one is, 3 not everything was explored or checked");
-  verb->callback([options, &status] { status = Run(*options); });
+  verb.Run([options, &status] { status = Run(*options); });
 }
 
 }  // namespace rondo::driver

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 
@@ -8,6 +7,7 @@
 #include "base/file.h"
 #include "choreo/syntax/format.h"
 #include "choreo/syntax/parser.h"
+#include "driver/command.h"
 #include "driver/exit_status.h"
 #include "driver/load.h"
 #include "driver/terminal.h"
@@ -92,14 +92,14 @@ int FormatFile(const std::string& file, const Options& options) {
 
 void AddFormatVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("fmt", "write programs and choreographies in their canonical form");
-  verb->add_option("FILE", options->files,
-                   "Koord programs, specifications, robots and choreographies, rewritten in place")
-      ->required();
-  verb->add_flag("--check", options->check, "change nothing; fail if a file is not formatted");
-  verb->add_flag("--stdout", options->print, "print the result instead of writing it");
-  verb->footer("example: rondo fmt --check examples/koord/*.koord");
-  verb->callback([options, &status] {
+  Command verb(app, "fmt", "write programs and choreographies in their canonical form");
+  verb.Option("FILE", options->files,
+              "Koord programs, specifications, robots and choreographies, rewritten in place")
+      .Required();
+  verb.Flag("--check", options->check, "change nothing; fail if a file is not formatted");
+  verb.Flag("--stdout", options->print, "print the result instead of writing it");
+  verb.Footer("example: rondo fmt --check examples/koord/*.koord");
+  verb.Run([options, &status] {
     for (const std::string& file : options->files) status = std::max(status, FormatFile(file, *options));
   });
 }

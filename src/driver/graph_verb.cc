@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "choreo/draw/chart.h"
+#include "driver/command.h"
 #include "driver/exit_status.h"
 #include "driver/motion.h"
 #include "driver/terminal.h"
@@ -145,16 +145,14 @@ int Run(const Options& options) {
 
 void AddGraphVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("graph", "show a choreography: as a picture, a list or JSON");
-  verb->add_option("FILE", options->files,
-                   "a `.rondo` file, and a `.chor` file about its world if there is one")
-      ->required();
-  verb->add_option("--choreography", options->choreography, "only this one");
-  verb->add_option("--svg", options->svg,
-                   "write a picture to this file: a lane for each robot, time downwards");
-  verb->add_flag("--json", options->json, "nodes and edges as JSON on standard output");
-  verb->footer("example: rondo graph examples/choreo/handover.rondo --svg handover.svg");
-  verb->callback([options, &status] { status = Run(*options); });
+  Command verb(app, "graph", "show a choreography: as a picture, a list or JSON");
+  verb.Option("FILE", options->files, "a `.rondo` file, and a `.chor` file about its world if there is one")
+      .Required();
+  verb.Option("--choreography", options->choreography, "only this one");
+  verb.Option("--svg", options->svg, "write a picture to this file: a lane for each robot, time downwards");
+  verb.Flag("--json", options->json, "nodes and edges as JSON on standard output");
+  verb.Footer("example: rondo graph examples/choreo/handover.rondo --svg handover.svg");
+  verb.Run([options, &status] { status = Run(*options); });
 }
 
 }  // namespace rondo::driver

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "driver/command.h"
 #include "driver/exit_status.h"
 #include "driver/motion.h"
 #include "driver/motion_report.h"
@@ -56,24 +56,22 @@ int Run(const Options& options) {
 
 void AddInferVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("infer", "find what would otherwise be written by hand");
-  verb->require_subcommand(1);
-  CLI::App* regions = verb->add_subcommand("regions", "regions for the threads that have none");
-  regions
-      ->add_option("FILE", options->files, "a choreography (`.rondo`), perhaps with `.chor` files behind it")
-      ->required();
-  regions->add_option("--option", options->admitted, "an option for every choreography: `equal_durations`")
-      ->allow_extra_args(false);
-  regions->add_option("--timeout", options->timeout, "seconds for each `parallel`; default: 10")
-      ->check(CLI::Range(0.001, 1e6));
-  regions->add_flag("--json", options->json, "the regions as JSON on standard output");
-  regions->footer(
+  Command verb(app, "infer", "find what would otherwise be written by hand");
+  Command regions = verb.Verb("regions", "regions for the threads that have none");
+  regions.Option("FILE", options->files, "a choreography (`.rondo`), perhaps with `.chor` files behind it")
+      .Required();
+  regions.Option("--option", options->admitted, "an option for every choreography: `equal_durations`")
+      .OneEach();
+  regions.Option("--timeout", options->timeout, "seconds for each `parallel`; default: 10")
+      .Between(0.001, 1e6);
+  regions.Flag("--json", options->json, "the regions as JSON on standard output");
+  regions.Footer(
       "example: rondo infer regions examples/choreo/shuttle.rondo\n\n"
       "Prints where each thread is and `thread region ...` to paste there. Every motion of a thread is "
       "proved to "
       "keep to\nits region; `rondo prove` finds the same regions by itself.\n"
       "exit status: 0 every thread has a region now, 1 wrong input, 3 none was found for some");
-  regions->callback([options, &status] { status = Run(*options); });
+  regions.Run([options, &status] { status = Run(*options); });
 }
 
 }  // namespace rondo::driver

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
+#include "driver/command.h"
 #include "driver/exit_status.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
@@ -49,20 +48,22 @@ int Run(const Options& options) {
 
 void AddPlotVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("plot", "draw a simulated run");
-  verb->add_option("TRACE", options->trace, "what `rondo simulate --trace` wrote")->required();
-  verb->add_option("--svg", options->svg, "where to write the picture")->required();
-  auto* paths = verb->add_flag("--paths", options->paths, "where the robots went, from above (the default)");
-  auto* distances =
-      verb->add_flag("--distances", options->distances, "how near robots and obstacles came, over time");
-  auto* map = verb->add_flag("--map", options->map, "the map that the robots drew, and the world as it is");
-  paths->excludes(distances)->excludes(map);
-  distances->excludes(map);
-  verb->footer(
+  Command verb(app, "plot", "draw a simulated run");
+  verb.Option("TRACE", options->trace, "what `rondo simulate --trace` wrote").Required();
+  verb.Option("--svg", options->svg, "where to write the picture").Required();
+  CommandOption paths =
+      verb.Flag("--paths", options->paths, "where the robots went, from above (the default)");
+  CommandOption distances =
+      verb.Flag("--distances", options->distances, "how near robots and obstacles came, over time");
+  const CommandOption map =
+      verb.Flag("--map", options->map, "the map that the robots drew, and the world as it is");
+  paths.Excludes(distances).Excludes(map);
+  distances.Excludes(map);
+  verb.Footer(
       "examples:\n  rondo simulate examples/koord/lineform --trace line.mcap\n"
       "  rondo plot line.mcap --svg paths.svg\n"
       "  rondo plot line.mcap --distances --svg distances.svg");
-  verb->callback([options, &status] { status = Run(*options); });
+  verb.Run([options, &status] { status = Run(*options); });
 }
 
 }  // namespace rondo::driver

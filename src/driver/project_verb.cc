@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "choreo/draw/automaton.h"
 #include "choreo/project/project.h"
 #include "choreo/wellformed/wellformed.h"
+#include "driver/command.h"
 #include "driver/exit_status.h"
 #include "driver/motion.h"
 #include "driver/terminal.h"
@@ -99,17 +99,16 @@ int Run(const Options& options) {
 
 void AddProjectVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb =
-      app.add_subcommand("project", "show what each robot of a choreography does: its local type");
-  verb->add_option("FILE", options->file, "robots, a world and choreographies (`.rondo`)")->required();
-  verb->add_option("ROBOT", options->robot, "only this robot");
-  verb->add_option("--svg", options->svg, "write the automaton of one robot as a picture to this file");
-  verb->add_flag("--json", options->json, "the automata as JSON on standard output");
-  verb->footer(
+  Command verb(app, "project", "show what each robot of a choreography does: its local type");
+  verb.Option("FILE", options->file, "robots, a world and choreographies (`.rondo`)").Required();
+  verb.Option("ROBOT", options->robot, "only this robot");
+  verb.Option("--svg", options->svg, "write the automaton of one robot as a picture to this file");
+  verb.Flag("--json", options->json, "the automata as JSON on standard output");
+  verb.Footer(
       "example: rondo project examples/choreo/handover.rondo arm\n"
       "         rondo project examples/choreo/handover.rondo arm --svg arm.svg\n\n"
       "Each line is a step: the state, what the robot does or what happens to it, and the state behind it.");
-  verb->callback([options, &status] { status = Run(*options); });
+  verb.Run([options, &status] { status = Run(*options); });
 }
 
 }  // namespace rondo::driver

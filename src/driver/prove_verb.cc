@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "driver/command.h"
 #include "driver/discharge.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
@@ -143,20 +143,19 @@ MotionProveOptions ToMotionOptions(const Options& options) {
 }
 
 // Options that belong to the other language are a mistake, not to be ignored.
-void Refuse(const CLI::App& verb, std::initializer_list<const char*> names, const char* what) {
+void Refuse(const Command& verb, std::initializer_list<const char*> names, const char* what) {
   for (const char* name : names) {
-    if (verb.get_option(name)->count() > 0)
-      throw CLI::ValidationError(name, fmt::format("is not for {}", what));
+    if (verb.Given(name)) RefuseOption(name, fmt::format("is not for {}", what));
   }
 }
 
-int Dispatch(Options& options, const CLI::App& verb) {
+int Dispatch(Options& options, const Command& verb) {
   if (IsMotionFile(options.files[0])) {
     Refuse(verb, {"--spec", "--robots", "--cross-check", "--reach"}, "choreographies");
     return ProveMotion(ToMotionOptions(options));
   }
   Refuse(verb, {"--option", "--certificates", "--svg", "--no-certify"}, "Koord programs");
-  if (options.files.size() > 1) throw CLI::ValidationError("FILE", "one Koord program at a time");
+  if (options.files.size() > 1) RefuseOption("FILE", "one Koord program at a time");
   options.file = options.files[0];
   return Run(options);
 }
@@ -165,44 +164,40 @@ int Dispatch(Options& options, const CLI::App& verb) {
 
 void AddProveVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand(
-      "prove", "prove Koord programs for any number of robots, and choreographies of motions");
-  verb->add_option(
-          "FILE", options->files,
-          "a Koord program (`NAME.spec` beside it belongs to it), or a choreography (`.rondo`), perhaps "
-          "with original choreographies (`.chor`) and programs (`ROBOT.rosl`) behind it")
-      ->required();
-  verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
-  verb->add_option("--robots", options->robots, "fix the number of robots; default: every N >= 1")
-      ->check(CLI::Range(int64_t{1}, int64_t{1'000'000}));
-  verb->add_option("--jobs", options->jobs, "threads; default: one for each core");
-  verb->add_option("--timeout", options->timeout, "seconds for each question or obligation; default: 10")
-      ->check(CLI::Range(0.001, 1e6));
-  verb->add_option("--smt-out", options->smt_out, "write every obligation as SMT-LIB 2 into this folder");
-  verb->add_option("--cross-check", options->cross_check,
-                   "decide every obligation again with this solver, such as cvc5");
-  verb->add_option("--option", options->admitted,
-                   "an option for every choreography, as if it were written there: `equal_durations`")
-      ->allow_extra_args(false);
-  verb->add_option("--certificates", options->certificates,
-                   "write every certificate of a choreography into this folder, for `rondo certify`");
-  verb->add_option(
-      "--svg", options->svg,
-      "draw the scene of the first collision or region that fails: from above and from the side");
-  verb->add_option("--reach", options->reach,
-                   "for what is not inductive: search so many rounds for a run that violates it")
-      ->check(CLI::Range(1U, 1'000'000U));
-  verb->add_flag("--no-certify", options->no_certify,
-                 "do not write and check certificates of choreographies");
-  verb->add_flag("--no-cache", options->no_cache, "neither use nor fill the proof cache");
-  verb->add_flag("--json", options->json, "the verdicts as JSON on standard output");
-  verb->footer(
+  Command verb(app, "prove", "prove Koord programs for any number of robots, and choreographies of motions");
+  verb.Option("FILE", options->files,
+              "a Koord program (`NAME.spec` beside it belongs to it), or a choreography (`.rondo`), perhaps "
+              "with original choreographies (`.chor`) and programs (`ROBOT.rosl`) behind it")
+      .Required();
+  verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
+  verb.Option("--robots", options->robots, "fix the number of robots; default: every N >= 1")
+      .Between(int64_t{1}, int64_t{1'000'000});
+  verb.Option("--jobs", options->jobs, "threads; default: one for each core");
+  verb.Option("--timeout", options->timeout, "seconds for each question or obligation; default: 10")
+      .Between(0.001, 1e6);
+  verb.Option("--smt-out", options->smt_out, "write every obligation as SMT-LIB 2 into this folder");
+  verb.Option("--cross-check", options->cross_check,
+              "decide every obligation again with this solver, such as cvc5");
+  verb.Option("--option", options->admitted,
+              "an option for every choreography, as if it were written there: `equal_durations`")
+      .OneEach();
+  verb.Option("--certificates", options->certificates,
+              "write every certificate of a choreography into this folder, for `rondo certify`");
+  verb.Option("--svg", options->svg,
+              "draw the scene of the first collision or region that fails: from above and from the side");
+  verb.Option("--reach", options->reach,
+              "for what is not inductive: search so many rounds for a run that violates it")
+      .Between(1U, 1'000'000U);
+  verb.Flag("--no-certify", options->no_certify, "do not write and check certificates of choreographies");
+  verb.Flag("--no-cache", options->no_cache, "neither use nor fill the proof cache");
+  verb.Flag("--json", options->json, "the verdicts as JSON on standard output");
+  verb.Footer(
       "examples:\n  rondo prove examples/koord/lineform.koord\n"
       "  rondo prove --robots 15 --cross-check cvc5 examples/koord/delivery.koord\n"
       "  rondo prove examples/choreo/handover.rondo\n"
       "  rondo prove --svg scene.svg --smt-out obligations examples/choreo/underpass.rondo\n\n"
       "exit status: 0 everything proved, 1 something refuted or not inductive, 3 something undecided");
-  verb->callback([options, verb, &status] { status = Dispatch(*options, *verb); });
+  verb.Run([options, verb, &status] { status = Dispatch(*options, verb); });
 }
 
 }  // namespace rondo::driver

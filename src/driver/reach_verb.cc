@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "driver/command.h"
 #include "driver/course_file.h"
 #include "driver/discharge.h"
 #include "driver/exit_status.h"
@@ -314,54 +314,47 @@ class Run {
 
 void AddReachVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("reach", "prove contracts of motions against the dynamics of robots");
-  verb->add_option("FILE", options->files, "robots and choreographies (`.rondo`), or a Koord program")
-      ->required();
-  verb->add_option("--spec", options->spec, "the specification of a Koord program, if it is not beside it");
-  verb->add_option("--contract", options->contract, "only contracts whose name contains this");
-  verb->add_option("--timeout", options->timeout, "seconds for each contract; default: 60")
-      ->check(CLI::Range(0.001, 1e6));
-  verb->add_option("--jobs", options->jobs, "threads; default: as many as there are cores");
-  verb->add_option("--seed", options->seed, "of the trajectories that look for a violation; default: 1");
-  verb->add_option("--sweep", options->sweep,
-                   "a parameter and its range, in SI units: for which of its values do contracts hold?")
-      ->expected(2)
-      ->allow_extra_args(false)
-      ->type_name("NAME FROM..TO");
-  verb->add_option("--parts", options->parts,
-                   "of --sweep: how finely the range is divided, at most; default: 64")
-      ->check(CLI::Range(size_t{1}, size_t{65536}));
-  verb->add_option("--svg", options->svg, "write a picture: tubes, samples, starts and bounds");
-  verb->add_option("--save", options->save,
-                   "where trajectories that break a contract go, for `rondo replay`");
-  verb->add_flag("--statistical", options->statistical,
-                 "draw starts at random instead of proving: how many fail at most, with which confidence");
-  verb->add_option("--runs", options->sampling.runs, "of --statistical; default: 6905 (for 0.001 with 0.999)")
-      ->check(CLI::Range(size_t{1}, size_t{100'000'000}));
-  verb->add_option("--confidence", options->sampling.confidence, "of --statistical; default: 0.999")
-      ->check(CLI::Range(0.5, 0.999999999));
-  verb->add_option(
+  Command verb(app, "reach", "prove contracts of motions against the dynamics of robots");
+  verb.Option("FILE", options->files, "robots and choreographies (`.rondo`), or a Koord program").Required();
+  verb.Option("--spec", options->spec, "the specification of a Koord program, if it is not beside it");
+  verb.Option("--contract", options->contract, "only contracts whose name contains this");
+  verb.Option("--timeout", options->timeout, "seconds for each contract; default: 60").Between(0.001, 1e6);
+  verb.Option("--jobs", options->jobs, "threads; default: as many as there are cores");
+  verb.Option("--seed", options->seed, "of the trajectories that look for a violation; default: 1");
+  verb.Option("--sweep", options->sweep,
+              "a parameter and its range, in SI units: for which of its values do contracts hold?")
+      .Takes(2, "NAME FROM..TO");
+  verb.Option("--parts", options->parts, "of --sweep: how finely the range is divided, at most; default: 64")
+      .Between(size_t{1}, size_t{65536});
+  verb.Option("--svg", options->svg, "write a picture: tubes, samples, starts and bounds");
+  verb.Option("--save", options->save, "where trajectories that break a contract go, for `rondo replay`");
+  verb.Flag("--statistical", options->statistical,
+            "draw starts at random instead of proving: how many fail at most, with which confidence");
+  verb.Option("--runs", options->sampling.runs, "of --statistical; default: 6905 (for 0.001 with 0.999)")
+      .Between(size_t{1}, size_t{100'000'000});
+  verb.Option("--confidence", options->sampling.confidence, "of --statistical; default: 0.999")
+      .Between(0.5, 0.999999999);
+  verb.Option(
       "--simulator", options->sampling.simulator,
       "of --statistical: a command or a shared library (.so) that simulates the robot instead of its model "
       "(docs/reach.md)");
-  verb->add_option("--tube", options->sampling.tube,
-                   "of --statistical: judge a tube that is learned from a few runs, as Verse learns it "
-                   "(`compat`) or with corners and slack (`careful`)")
-      ->check(CLI::IsMember({"compat", "careful"}));
-  verb->add_option("--certificates", options->certificates,
-                   "write the certificate of every proof into this folder, for `rondo certify`");
-  verb->add_flag("--no-certify", options->no_certify,
-                 "do not have proofs checked by the independent checker");
-  verb->add_flag("--no-cache", options->no_cache, "do not remember for `rondo prove` what is proved");
-  verb->add_flag("--json", options->json, "the result as JSON on standard output");
-  verb->footer(
+  verb.Option("--tube", options->sampling.tube,
+              "of --statistical: judge a tube that is learned from a few runs, as Verse learns it "
+              "(`compat`) or with corners and slack (`careful`)")
+      .OneOf({"compat", "careful"});
+  verb.Option("--certificates", options->certificates,
+              "write the certificate of every proof into this folder, for `rondo certify`");
+  verb.Flag("--no-certify", options->no_certify, "do not have proofs checked by the independent checker");
+  verb.Flag("--no-cache", options->no_cache, "do not remember for `rondo prove` what is proved");
+  verb.Flag("--json", options->json, "the result as JSON on standard output");
+  verb.Footer(
       "examples:\n  rondo reach examples/reach/laub_loomis.rondo --contract Wide --svg tube.svg\n"
       "  rondo reach models/quadrotor.rondo --contract CrossField --sweep velocity_gain 1.2..2\n\n"
       "For every state in which a motion may begin, every parameter and every input: does the robot keep the "
       "motion's "
       "contract\nunder its dynamics and controller (docs/reach.md)?\n"
       "exit status: 0 every contract is proved, 1 one is refuted, or the input is wrong, 3 neither");
-  verb->callback([options, &status] { status = Run(*options)(); });
+  verb.Run([options, &status] { status = Run(*options)(); });
 }
 
 }  // namespace rondo::driver

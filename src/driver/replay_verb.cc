@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "driver/command.h"
 #include "driver/course_file.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
@@ -205,16 +205,16 @@ int Run(const Options& options) {
 
 void AddReplayVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("replay", "run a trace or counterexample again, and compare");
-  verb->add_option("FILE", options->file,
-                   "a trace of `rondo simulate`, or a run that `rondo explore` or `rondo reach` saved")
-      ->required();
-  verb->add_flag("--json", options->json, "the result as JSON on standard output");
-  verb->footer(
+  Command verb(app, "replay", "run a trace or counterexample again, and compare");
+  verb.Option("FILE", options->file,
+              "a trace of `rondo simulate`, or a run that `rondo explore` or `rondo reach` saved")
+      .Required();
+  verb.Flag("--json", options->json, "the result as JSON on standard output");
+  verb.Footer(
       "examples:\n  rondo replay mapping.mcap\n  rondo replay run.json\n\n"
       "A trace keeps the texts of its program, specification and fleet: it replays without them.\n"
       "exit status: 0 the same run, 1 it differs (and where)");
-  verb->callback([options, &status] { status = Run(*options); });
+  verb.Run([options, &status] { status = Run(*options); });
 }
 
 }  // namespace rondo::driver

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "driver/command.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
 #include "driver/koord_load.h"
@@ -178,30 +178,28 @@ int Run(const Options& options) {
 
 void AddSimulateVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("simulate", "run a Koord program on simulated robots, in virtual time");
-  verb->add_option(
+  Command verb(app, "simulate", "run a Koord program on simulated robots, in virtual time");
+  verb.Option(
           "FILE", options->file,
           "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet, `NAME.spec` the "
           "specification")
-      ->required();
-  verb->add_option("--fleet", options->fleet, "the fleet, if it is not beside the program");
-  verb->add_option("--spec", options->spec, "the specification, if it is not beside the program");
-  verb->add_option("--seed", options->seed, "of everything that is random; default: the fleet's, or 1");
-  verb->add_option("--duration", options->duration, "seconds; default: as the fleet says")
-      ->check(CLI::Range(1e-3, 1e7));
-  verb->add_option("--trace", options->trace, "write everything that happens into this file (MCAP)");
-  verb->add_option("--jobs", options->jobs,
-                   "threads; default: one for each core. The run does not depend on it");
-  verb->add_flag("--fail-on-collision", options->fail_on_collision, "exit status 1 if robots touch anything");
-  verb->add_flag("--json", options->json, "the result as JSON on standard output");
-  verb->footer(
+      .Required();
+  verb.Option("--fleet", options->fleet, "the fleet, if it is not beside the program");
+  verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
+  verb.Option("--seed", options->seed, "of everything that is random; default: the fleet's, or 1");
+  verb.Option("--duration", options->duration, "seconds; default: as the fleet says").Between(1e-3, 1e7);
+  verb.Option("--trace", options->trace, "write everything that happens into this file (MCAP)");
+  verb.Option("--jobs", options->jobs, "threads; default: one for each core. The run does not depend on it");
+  verb.Flag("--fail-on-collision", options->fail_on_collision, "exit status 1 if robots touch anything");
+  verb.Flag("--json", options->json, "the result as JSON on standard output");
+  verb.Footer(
       "examples:\n  rondo simulate examples/koord/mapping --seed 1 --trace mapping.mcap\n"
       "  rondo plot mapping.mcap --map --svg map.svg\n"
       "  rondo replay mapping.mcap\n\n"
       "Every invariant, assumption and summary is checked while the program runs.\n"
       "exit status: 0 nothing was violated, 1 something was, 3 not everything could be checked, or "
       "interrupted");
-  verb->callback([options, &status] { status = Run(*options); });
+  verb.Run([options, &status] { status = Run(*options); });
 }
 
 }  // namespace rondo::driver

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -8,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/parallel.h"
+#include "driver/command.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
 #include "driver/load.h"
@@ -173,27 +173,25 @@ int Run(const Options& options) {
 
 void AddSolveVerb(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("solve", "decide SMT-LIB 2 scripts of nonlinear real arithmetic");
-  verb->add_option("FILE", options->files, "scripts, in the dialect of dReal")->required();
-  verb->add_option(
+  Command verb(app, "solve", "decide SMT-LIB 2 scripts of nonlinear real arithmetic");
+  verb.Option("FILE", options->files, "scripts, in the dialect of dReal").Required();
+  verb.Option(
       "--solver", options->solver,
       "auto (interval arithmetic, then Z3 beside it), icp (interval arithmetic alone), z3, or a program "
       "such as cvc5 or dreal; default: auto");
-  verb->add_option("--jobs", options->jobs, "threads; default: one for each core");
-  verb->add_option("--timeout", options->timeout, "seconds for each question; default: 60")
-      ->check(CLI::Range(0.001, 1e6));
-  verb->add_option("--precision", options->precision,
-                   "the widest box that may be answered with delta-sat; default: what the script says")
-      ->check(CLI::Range(1e-12, 1e3));
-  verb->add_option(
-      "--cert", options->certificate,
-      "where to write the refutation of `unsat`, for `rondo certify`; more than one are numbered");
-  verb->add_flag("--compare", options->compare, "ask every engine and compare their answers");
-  verb->add_flag("--no-lemmas", options->no_lemmas, "do not look for rotations, to measure what they bring");
-  verb->add_flag("--model", options->model, "print values of the variables after `sat`");
-  verb->add_flag("--stats", options->stats, "print what each question took");
-  verb->add_flag("--json", options->json, "the answers as JSON on standard output");
-  verb->footer(
+  verb.Option("--jobs", options->jobs, "threads; default: one for each core");
+  verb.Option("--timeout", options->timeout, "seconds for each question; default: 60").Between(0.001, 1e6);
+  verb.Option("--precision", options->precision,
+              "the widest box that may be answered with delta-sat; default: what the script says")
+      .Between(1e-12, 1e3);
+  verb.Option("--cert", options->certificate,
+              "where to write the refutation of `unsat`, for `rondo certify`; more than one are numbered");
+  verb.Flag("--compare", options->compare, "ask every engine and compare their answers");
+  verb.Flag("--no-lemmas", options->no_lemmas, "do not look for rotations, to measure what they bring");
+  verb.Flag("--model", options->model, "print values of the variables after `sat`");
+  verb.Flag("--stats", options->stats, "print what each question took");
+  verb.Flag("--json", options->json, "the answers as JSON on standard output");
+  verb.Footer(
       "example: rondo solve --model --stats examples/smt/levels.smt2\n\n"
       "answers: unsat (no solution, rigorously), sat (with a verified solution), delta-sat (a small box in "
       "which\n"
@@ -201,7 +199,7 @@ void AddSolveVerb(CLI::App& app, int& status) {
       "exit status: 0 every question answered with sat or unsat, 1 wrong input, 3 something undecided, 4 "
       "engines\n"
       "contradict each other");
-  verb->callback([options, &status] { status = Run(*options); });
+  verb.Run([options, &status] { status = Run(*options); });
 }
 
 }  // namespace rondo::driver

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <CLI/App.hpp>
-#include <string>
-#include <vector>
+namespace CLI {
+class App;
+}  // namespace CLI
 
 /// The verbs of the command line. Each adds itself to the application and leaves its exit status in `status`.
 namespace rondo::driver {
