@@ -193,6 +193,7 @@ Runner::Next Runner::Along(State& state, const Stage& stage) {
       if (!control->Apply(flow.set())) return failed("the controller is not defined on the whole set");
       control->Finish(flow.set(), next, capacity);
       flow.set() = std::move(next);
+      for (Possible& p : state.possible) p.rising.clear();  // rates may jump
       ++state.sample;
       state.look = true;
     }

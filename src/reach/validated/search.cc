@@ -9,6 +9,17 @@
 
 namespace rondo::reach {
 
+namespace {
+
+// By which errors are measured.
+double SizeOf(const std::vector<double>& state) {
+  double size = 1;
+  for (const double x : state) size = std::fmax(size, std::fabs(x));
+  return size;
+}
+
+}  // namespace
+
 std::optional<Refuted> Search::Try(std::vector<double> start) {
   for (size_t i = 0; i < problem_.copy_of.size(); ++i) {
     if (problem_.copy_of[i]) start[i] = start[*problem_.copy_of[i]];
@@ -37,6 +48,8 @@ std::optional<Refuted> Search::Try(std::vector<double> start) {
     if (worst.miss > -1e299 && (!closest_ || worst.miss > closest_->miss)) closest_ = worst;
     return std::nullopt;
   }
+  // Events shift instants: so small a miss is the integrator's.
+  if (!problem_.events.empty() && worst.miss <= 1e-9 * SizeOf(worst.state)) return std::nullopt;
   Refuted refuted{std::move(course), std::move(worst), false};
   refuted.certain = Confirm(refuted);
   if (!refuted.certain && !Repeats(refuted)) return std::nullopt;
@@ -74,15 +87,13 @@ bool Search::Repeats(const Refuted& refuted) {
   if (stop_.StopRequested() || fine.miss <= 0) return false;
   if (!problem_.events.empty()) {
     // Events shift instants: both runs have to break the claim clearly, and nearly at the same time.
-    double size = 1;
-    for (const double x : fine.state) size = std::fmax(size, std::fabs(x));
+    const double size = SizeOf(fine.state);
     return fine.claim == refuted.violation.claim && fine.miss > 1e-7 * size &&
            refuted.violation.miss > 1e-7 * size &&
            std::fabs(fine.time - refuted.violation.time) <= horizon / 100;
   }
   // Both stop at the first instant that they look at and see a violation: go on to the same one.
   double apart = 0;
-  double miss = -1e300;
   std::vector<double> there;
   trajectories_.Run(
       refuted.course, horizon / 400,
@@ -93,12 +104,10 @@ bool Search::Repeats(const Refuted& refuted) {
       },
       1e-13);
   if (there.size() != refuted.violation.state.size()) return false;
-  double size = 1;
-  for (size_t i = 0; i < there.size(); ++i) {
+  for (size_t i = 0; i < there.size(); ++i)
     apart = std::fmax(apart, std::fabs(there[i] - refuted.violation.state[i]));
-    size = std::fmax(size, std::fabs(there[i]));
-  }
-  miss = trajectories_.Miss(refuted.violation.claim, there);
+  const double size = SizeOf(there);
+  const double miss = trajectories_.Miss(refuted.violation.claim, there);
   return miss > 1e-7 * size && miss > 100 * apart;
 }
 
