@@ -26,7 +26,7 @@ PartRecord::Step StepOf(const reach::StepRecord& record) {
   step.kind = record.kind == From::kStep    ? To::kStep
               : record.kind == From::kCross ? To::kCross
               : record.kind == From::kSplit ? To::kSplit
-                                            : To::kOther;
+                                            : To::kSeveral;
   step.length = record.length;
   step.degree = record.degree;
   step.event = record.event;
@@ -40,7 +40,7 @@ PartRecord::Step StepOf(const reach::StepRecord& record) {
 constexpr std::pair<const char*, PartRecord::Step::Kind> kKinds[] = {
     {"cross", PartRecord::Step::Kind::kCross},
     {"split", PartRecord::Step::Kind::kSplit},
-    {"other", PartRecord::Step::Kind::kOther}};
+    {"several", PartRecord::Step::Kind::kSeveral}};
 
 // A step is [length, degree]; anything else is an object.
 nlohmann::json ToJson(const PartRecord::Step& step) {
@@ -74,7 +74,7 @@ struct Reader {
       step.degree = Whole(json.at(1));
       return step;
     }
-    step.kind = PartRecord::Step::Kind::kOther;
+    step.kind = PartRecord::Step::Kind::kSeveral;
     for (const auto& [name, kind] : kKinds) {
       if (json.at("kind") == name) step.kind = kind;
     }

@@ -336,5 +336,91 @@ TEST_F(Problems, WithAnEventNeedItsTime) {
   EXPECT_FALSE(checked());
 }
 
+// A parabola x = a - 2 t + t^2 with a in [0.9, 1.1] touches zero, or not: it is crossed twice or not at all.
+// Meanwhile, all modes are possible.
+TEST_F(Problems, WithATouchFollowAllModes) {
+  const TermId x = Var("x"), y = Var("y"), inside = Var("inside"), count = Var("count");
+  Problem p =
+      Make({x, y, inside, count}, {y, Num(2), Num(0), Num(0)}, {{0.9, 1.1}, {-2, -2}, {0, 0}, {0, 0}}, 2);
+  p.pinned = {std::nullopt, Rational(-2), Rational(0), Rational(0)};
+  const auto when = [&](double from, TermId condition, double to) {
+    p.events.push_back({arena_.And({arena_.Eq(inside, Num(from)), condition}),
+                        {std::nullopt, std::nullopt, Num(to), arena_.Add(count, Num(1))}});
+  };
+  when(0, arena_.Le(x, Num(0)), 1);
+  when(1, arena_.Lt(Num(0), x), 0);
+  PartRecord::Step several{.length = 0.02, .degree = 2, .kind = PartRecord::Step::Kind::kSeveral};
+  const auto finally = [&](TermId formula) {
+    p.claims = {{"post", formula, p.horizon, p.horizon}};
+    return Checked(p, {{{{}, {several}}}}).accepted;
+  };
+  EXPECT_TRUE(finally(arena_.Or(arena_.Eq(count, Num(0)), arena_.Eq(count, Num(2)))));
+  EXPECT_TRUE(finally(arena_.Eq(inside, Num(0))));
+  EXPECT_FALSE(finally(arena_.Eq(count, Num(0))));
+  EXPECT_FALSE(finally(arena_.Eq(count, Num(2))));
+  Always(p, arena_.Eq(inside, Num(0)));
+  EXPECT_FALSE(Checked(p, {{{{}, {several}}}}).accepted);
+  Always(p, arena_.Le(Num(-0.11), x));
+  EXPECT_TRUE(Checked(p, {{{{}, {several}}}}).accepted);
+  // Where it touches for certain, or not at all.
+  p.initial[0] = {0.9, 0.95};
+  EXPECT_TRUE(finally(arena_.Eq(count, Num(2))));
+  p.initial[0] = {1.05, 1.1};
+  EXPECT_TRUE(finally(arena_.Eq(count, Num(0))));
+  // What is known of rates does not outlive the instant at which a controller changes them.
+  p.initial[0] = {0.9, 1.1};
+  const TermId u = Var("u");
+  p.states.push_back(u);
+  p.rates = {arena_.Add(u, y), Num(2), Num(0), Num(0), Num(0)};
+  p.initial.push_back({0, 0});
+  p.pinned.emplace_back(Rational(0));
+  for (Event& e : p.events) e.updates.emplace_back();
+  p.controller.emplace();
+  p.controller->period = *Rational::Parse("1.5");
+  p.controller->updates.resize(5);
+  for (const double drop : {0.0, 10.0}) {
+    p.controller->updates[4] = arena_.Ite(arena_.Le(Num(0), y), Num(-drop), Num(0));
+    EXPECT_EQ(finally(arena_.Le(count, Num(2))), drop == 0) << drop;
+  }
+}
+
+TEST_F(Problems, FollowNoEventsWithoutARecord) {
+  const TermId x = Var("x"), inside = Var("inside");
+  Problem p = Make({x, inside}, {Num(1), Num(0)}, {{-0.5, 0}, {0, 0}}, 1);
+  p.pinned = {std::nullopt, Rational(0)};
+  p.events.push_back(
+      {arena_.And({arena_.Eq(inside, Num(0)), arena_.Le(Num(0.2), x)}), {std::nullopt, Num(1)}});
+  Always(p, arena_.Le(x, Num(2)));
+  EXPECT_FALSE(Checked(p, Even(0.02)).accepted);
+}
+
+// After a touch that may have happened, the modes go different ways: each is followed on its own.
+TEST_F(Problems, WithBranchesFollowEach) {
+  const TermId x = Var("x"), y = Var("y"), z = Var("z"), inside = Var("inside");
+  const TermId rate = arena_.Ite(arena_.Eq(inside, Num(1)), Num(1), Num(0));
+  Problem p = Make({x, y, z, inside}, {y, Num(2), rate, Num(0)}, {{0.9, 1.1}, {-2, -2}, {0, 0}, {0, 0}}, 2);
+  p.pinned = {std::nullopt, Rational(-2), Rational(0), Rational(0)};
+  p.events.push_back({arena_.And({arena_.Eq(inside, Num(0)), arena_.Le(x, Num(0))}),
+                      {std::nullopt, std::nullopt, std::nullopt, Num(1)}});
+  using Kind = PartRecord::Step::Kind;
+  PartRecord record;
+  for (int i = 0; i < 75; ++i) record.steps.push_back({.length = 0.02, .degree = 2, .kind = Kind::kSeveral});
+  for (int branch = 0; branch < 2; ++branch) {
+    record.steps.push_back({.kind = Kind::kSeveral});
+    for (int i = 0; i < 25; ++i) record.steps.push_back({.length = 0.02, .degree = 2});
+  }
+  const auto finally = [&](TermId formula) {
+    p.claims = {{"post", formula, p.horizon, p.horizon}};
+    return Checked(p, {{record}}).accepted;
+  };
+  // It is met after 1 - sqrt(1 - a) seconds, from 0.68 to 1.
+  EXPECT_TRUE(finally(arena_.Le(z, Num(1.4))));
+  EXPECT_FALSE(finally(arena_.Le(z, Num(1.31))));
+  // Until the branches part, z rises with any rate from 0 to 1.
+  EXPECT_TRUE(finally(arena_.Or(arena_.Eq(inside, Num(1)), arena_.Le(z, Num(0.9)))));
+  EXPECT_FALSE(finally(arena_.Eq(inside, Num(1))));
+  EXPECT_FALSE(finally(arena_.Eq(inside, Num(0))));
+}
+
 }  // namespace
 }  // namespace rondo::reach::certify

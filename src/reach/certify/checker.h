@@ -20,10 +20,11 @@ struct PartRecord {
   /// What was done next.
   struct Step {
     enum class Kind : uint8_t {
-      kStep,   ///< some time along the flow
-      kCross,  ///< all of the set meets an event
-      kSplit,  ///< a symbol is halved: first all steps of the lower half, then all of the upper one
-      kOther,  ///< what this checker does not follow
+      kStep,     ///< some time along the flow
+      kCross,    ///< all of the set meets an event
+      kSplit,    ///< a symbol is halved: first all steps of the lower half, then all of the upper one
+      kSeveral,  ///< several modes are possible meanwhile; without a length: each of them on its own from
+                 ///< here on
     };
     double length = 0;  ///< seconds; of kCross: until all of the set has met the event
     size_t degree = 0;  ///< of polynomials in the initial state

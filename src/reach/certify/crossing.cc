@@ -35,7 +35,8 @@ bool Follower::Cross(Place& place, const PartRecord::Step& record) {
   for (const ModeGuard& g : place.in->guards) {
     if (g.event == record.event) guard = &g;
   }
-  if (guard == nullptr || !guard->IsComparison()) return Fail("there is no such event");
+  if (guard == nullptr || !guard->IsComparison() || place.possible.size() != 1)
+    return Fail("there is no such event");
   const double window = record.length;
   if (!(window > 0) || !(record.together >= 0)) return Fail("an event takes no time");
   const Interval left = place.left - Interval::Point(window) - Interval::Point(record.together);
@@ -83,7 +84,7 @@ bool Follower::Move(Place& place, const Pace& whole, const ModeGuard* expected, 
       if (!(falls > 0)) return Fail("an event is not met transversally");
       *slope = std::fmin(*slope, falls);
     }
-    if (!During(place, seen)) return false;
+    if (!During(place, *place.in, seen)) return false;
     place.set = step.end();
     place.set.Reduce(ReachSet::MostColumns(place.set.states()));
     done += share;
@@ -95,7 +96,7 @@ bool Follower::Move(Place& place, const Pace& whole, const ModeGuard* expected, 
 // From the mode before to the one after.
 bool Follower::Switch(Place& place, const ModeGuard& guard, double slope) {
   const ModeSystem& before = *place.in;
-  const auto made = system_.For(guard.after);
+  const auto made = system_.For({guard.after});
   if (!made.ok()) return Fail(made.error().message);
   const ModeSystem& after = *made.value();
   const size_t n = place.set.states();
@@ -147,7 +148,7 @@ bool Follower::Switch(Place& place, const ModeGuard& guard, double slope) {
   if (!HoldsAround(place, before, around, &guard) || !HoldsAround(place, after, around, nullptr))
     return false;
   place.set.AddErrors(DistanceIn(late, jumps));
-  return Enter(place, after.mode);
+  return Enter(place, {{guard.after, {}}});
 }
 
 // Do all claims hold there, and no event but the expected one?

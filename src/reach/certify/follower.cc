@@ -14,7 +14,8 @@ constexpr size_t kPointOrder = 20;  // if the start is a single point
 constexpr double kLeastStep = 1e-10;
 constexpr size_t kMostSteps = 300'000;
 constexpr size_t kMostMonomials = 1000;
-constexpr size_t kMostRounds = 32;    // of events at one instant
+constexpr size_t kMostRounds = 32;  // of events at one instant
+constexpr size_t kMostPossible = 64;
 constexpr size_t kMostHalves = 1000;  // of symbols
 
 }  // namespace
@@ -62,27 +63,35 @@ std::string Follower::Run(const interval::Box& part, const std::vector<PartRecor
   if (steps.empty()) return "a part of the initial set has no steps";
   hints_ = &steps;
   Place place = Begin(part);
-  if (!Enter(place, system_.modes().start())) return reason_;
+  if (!Enter(place, {{system_.modes().start(), {}}})) return reason_;
   for (size_t c = 0; c < place.falls.size(); ++c) place.falls[c] = place.in->claims[c].starts_below;
   Follow(std::move(place));
   return reason_;
 }
 
-// What is discrete is known exactly.
-bool Follower::Enter(Place& place, const Mode& mode) {
-  auto in = system_.For(mode);
-  if (!in.ok()) return Fail(in.error().message);
-  place.in = in.value();
-  Eigen::VectorXd thin = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(place.set.states()));
-  for (size_t i = 0; i < place.set.states(); ++i) {
-    const auto& value = place.in->discrete[i];
+// In programs, discrete states are numbers or inputs. In sets they have a place, so that all states have one
+// order.
+void Follower::SetDiscrete(const ModeSystem& in, ReachSet& set) {
+  Eigen::VectorXd thin = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set.states()));
+  for (size_t i = 0; i < set.states(); ++i) {
+    const auto& value = in.discrete[i];
     if (!value) continue;
-    std::ranges::fill(place.set.polynomials[i], 0.0);
-    place.set.polynomials[i][0] = value->Middle();
-    place.set.generators.row(static_cast<Eigen::Index>(i)).setZero();
+    std::ranges::fill(set.polynomials[i], 0.0);
+    set.polynomials[i][0] = value->Middle();
+    set.generators.row(static_cast<Eigen::Index>(i)).setZero();
     thin[static_cast<Eigen::Index>(i)] = Radius(*value);
   }
-  place.set.AddErrors(thin);
+  set.AddErrors(thin);
+}
+
+bool Follower::Enter(Place& place, std::vector<Possible> possible) {
+  std::set<Mode> modes;
+  for (const Possible& p : possible) modes.insert(p.mode);
+  auto in = system_.For({modes.begin(), modes.end()});
+  if (!in.ok()) return Fail(in.error().message);
+  place.in = in.value();
+  place.possible = std::move(possible);
+  SetDiscrete(*place.in, place.set);
   place.falls.clear();
   for (const ModeClaim& claim : place.in->claims) place.falls.emplace_back(claim.starts_below.size(), false);
   return true;
@@ -103,7 +112,9 @@ bool Follower::Follow(Place place) {
     time_ = instants[place.instant + 1].ToDouble() - place.left.hi;
     const PartRecord::Step* hint = nullptr;
     if (!(place.carried > 0)) hint = &(*hints_)[std::min(next_hint_++, hints_->size() - 1)];
-    if (hint != nullptr && hint->kind == PartRecord::Step::Kind::kSplit) return Split(place, hint->symbol);
+    using Kind = PartRecord::Step::Kind;
+    if (hint != nullptr && hint->kind == Kind::kSplit) return Split(place, hint->symbol);
+    if (hint != nullptr && hint->kind == Kind::kSeveral && !(hint->length > 0)) return Fork(place);
     if (!Advance(place, hint)) break;
     if (!place.met) continue;
     ++place.instant;
@@ -123,6 +134,7 @@ bool Follower::Meet(Place& place) {
     if (!image.Of(place.in->control, place.set, place.in->dynamics.inputs))
       return Fail("the controller is not defined on the whole set");
     place.set = image.Set();
+    for (Possible& p : place.possible) p.rising.clear();  // rates may jump
   }
   if (!Settle(place)) return false;
   if (place.instant == 0 && !AtInstant(place, true)) return false;
@@ -131,27 +143,32 @@ bool Follower::Meet(Place& place) {
   return true;
 }
 
-// Events that hold at an instant happen, one after the other, until none does.
+// Events that hold at an instant happen, one after the other, until none does. Where it is not certain
+// whether they hold, both is possible.
 bool Follower::Settle(Place& place) {
   for (size_t round = 0; round < kMostRounds; ++round) {
     if (place.in->guards.empty()) return true;
     Image image;
     if (!image.Of(place.in->observed, place.set, place.in->dynamics.inputs))
       return Fail("the condition of an event is not defined on the whole set");
-    const ModeGuard* happens = nullptr;
-    for (const ModeGuard& guard : place.in->guards) {
-      const Truth truth = guard.formula.Check([&](size_t atom) {
-        // What is zero may hold for this instant only, and do nothing.
-        const Interval range = image.Range(guard.first + atom);
-        return range.hi == 0 ? Interval{range.lo, 0x1p-1000} : range;
-      });
-      if (truth == Truth::kFalse) continue;
-      if (truth == Truth::kOpen || happens != nullptr) return Fail("it cannot be told which events happen");
-      happens = &guard;
+    std::vector<Possible> next;
+    const auto add = [&](Possible possible) {
+      if (std::ranges::find(next, possible) == next.end()) next.push_back(std::move(possible));
+    };
+    for (const Possible& p : place.possible) {
+      bool stays = true;
+      for (const ModeGuard& guard : place.in->guards) {
+        if (place.in->modes[guard.mode] != p.mode) continue;
+        const auto range = [&](size_t atom) { return image.Range(guard.first + atom); };
+        if (guard.formula.Check(range) != Truth::kFalse) add({guard.after, {}});
+        stays = stays && !HoldsOn(guard, range);
+      }
+      if (stays) add(p);
     }
-    if (happens == nullptr) return true;
-    const Mode after = happens->after;
-    if (!Enter(place, after)) return false;
+    if (next.size() > kMostPossible) return Fail("too many modes are possible");
+    std::ranges::sort(next, {}, &Possible::mode);
+    if (next == place.possible) return true;
+    if (!Enter(place, std::move(next))) return false;
   }
   return Fail("events follow one another without end");
 }
@@ -165,8 +182,7 @@ bool Follower::Advance(Place& place, const PartRecord::Step* hint) {
     if (degree != place.set.basis->degree()) place.set.SetBasis(bases_.Of(symbols_, degree));
   }
   if (hint != nullptr && hint->kind == Kind::kCross) return Cross(place, *hint);
-  if (hint != nullptr && hint->kind == Kind::kOther)
-    return Fail("the checker does not follow several modes at once");
+  if (hint != nullptr) place.open = hint->kind == Kind::kSeveral;
   double wanted = hint != nullptr ? hint->length : place.carried;
   if (steps_ > kMostSteps) return Fail("too many steps");
   if (!(wanted >= kLeastStep)) wanted = kLeastStep;
@@ -179,21 +195,34 @@ bool Follower::Advance(Place& place, const PartRecord::Step* hint) {
 bool Follower::TakeStep(Place& place, double wanted) {
   Step step(place.in->dynamics, order_);
   double taken = wanted;
-  while (!step.Take(place.set, {taken, {}, 0})) {
-    taken *= 0.5;
-    if (taken < kLeastStep) return Fail("the set cannot be followed further");
-  }
-  ++steps_;
+  if (!Take(step, place.set, taken)) return false;
   Observation seen(*place.in, step);
+  std::vector<Possible> before = place.possible;
+  if (!IsQuiet(place, seen)) {
+    if (!place.open && place.possible.size() == 1) return Fail("an event may happen");
+    place.possible = std::move(before);
+    return Wander(place, wanted);
+  }
   for (size_t c = 0; c < place.falls.size(); ++c) {
     for (size_t k = 0; k < place.falls[c].size(); ++k) {
       if (place.falls[c][k]) place.falls[c][k] = seen.StaysBelow(place.in->claims[c].first + k);
     }
   }
-  if (!During(place, seen)) return false;
-  for (const ModeGuard& guard : place.in->guards) {
-    if (!seen.IsFalse(guard)) return Fail("an event may happen");
+  return During(place, *place.in, seen) && GoOn(place, step, wanted, taken);
+}
+
+// Shortens the step until it can be taken.
+bool Follower::Take(Step& step, const ReachSet& from, double& taken) {
+  while (!step.Take(from, {taken, {}, 0})) {
+    taken *= 0.5;
+    if (taken < kLeastStep) return Fail("the set cannot be followed further");
   }
+  ++steps_;
+  return true;
+}
+
+// To the end of the step.
+bool Follower::GoOn(Place& place, const Step& step, double wanted, double taken) {
   place.set = step.end();
   if (taken == place.left.hi) {
     // It lasted `left`, of which the upper end was taken.
@@ -245,12 +274,13 @@ bool Follower::IsDue(const Place& place, const ModeClaim& claim) const {
   return claim.claim->from < to && from < claim.claim->to;
 }
 
-bool Follower::During(const Place& place, Observation& seen) {
-  for (size_t c = 0; c < place.in->claims.size(); ++c) {
-    const ModeClaim& claim = place.in->claims[c];
+bool Follower::During(const Place& place, const ModeSystem& in, Observation& seen) {
+  for (size_t c = 0; c < in.claims.size(); ++c) {
+    const ModeClaim& claim = in.claims[c];
     if (!IsDue(place, claim)) continue;
     std::vector<bool> below = claim.implied;
-    for (size_t k = 0; k < below.size(); ++k) below[k] = below[k] || place.falls[c][k];
+    for (size_t k = 0; k < below.size() && &in == place.in.get(); ++k)
+      below[k] = below[k] || place.falls[c][k];
     if (!seen.Holds(claim, below)) return Fail(fmt::format("`{}` is not shown", claim.claim->name));
   }
   return true;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <set>
+
 #include "base/stop.h"
 #include "reach/certify/checker.h"
 #include "reach/certify/image.h"
@@ -23,30 +25,47 @@ class Follower {
   std::optional<size_t> WorstSide() const;
 
  private:
+  // A mode that is possible, and terms of its events that certainly rise now, if the mode still lasts: their
+  // first derivative is not negative.
+  struct Possible {
+    Mode mode;
+    std::set<TermId> rising;
+    bool operator==(const Possible&) const = default;
+  };
   // How far a set has come.
   struct Place {
     ReachSet set;
-    std::shared_ptr<const ModeSystem> in;
+    std::vector<Possible> possible;
+    std::shared_ptr<const ModeSystem> in;  ///< their modes
     size_t instant = 0;                    ///< the last one that was met
     Interval left;                         ///< seconds to the next one
     bool met = true;                       ///< is it just now?
     double carried = 0;                    ///< what is left of a step that was too long
+    bool open = false;                     ///< may events happen in what is left of it?
     std::vector<std::vector<bool>> falls;  ///< by claim and term: at most zero since the start?
   };
 
   Place Begin(const interval::Box& box);
-  bool Enter(Place& place, const Mode& mode);
+  bool Enter(Place& place, std::vector<Possible> possible);
+  static void SetDiscrete(const ModeSystem& in, ReachSet& set);
   bool Follow(Place place);
   bool Meet(Place& place);
   bool Settle(Place& place);
   bool Advance(Place& place, const PartRecord::Step* hint);
   bool TakeStep(Place& place, double wanted);
+  bool Take(Step& step, const ReachSet& from, double& taken);
+  bool GoOn(Place& place, const Step& step, double wanted, double taken);
   bool Split(const Place& place, size_t symbol);
   bool AtInstant(const Place& place, bool start);
+
+  bool IsQuiet(Place& place, Observation& seen) const;
+  bool Wander(Place& place, double wanted);
+  bool Fork(const Place& place);
+  std::vector<Possible> Reached(const ModeSystem& in, Observation& seen, std::vector<Possible> before);
   bool Fail(std::string reason);
 
   bool IsDue(const Place& place, const ModeClaim& claim) const;
-  bool During(const Place& place, Observation& seen);
+  bool During(const Place& place, const ModeSystem& in, Observation& seen);
 
   bool Cross(Place& place, const PartRecord::Step& record);
   bool Move(Place& place, const Pace& whole, const ModeGuard* expected, double* slope);
@@ -66,6 +85,7 @@ class Follower {
   double time_ = 0;  ///< roughly, for messages
   size_t steps_ = 0;
   size_t splits_ = 0;
+  size_t forks_ = 0;
   std::string reason_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "reach/certify/acceleration.h"
 #include "reach/system/bounds.h"
 
 namespace rondo::reach::certify {
@@ -79,6 +80,11 @@ Interval Observation::Slope(size_t output) {
   const OnBox* slopes = Slopes();
   if (slopes == nullptr) return {};
   return SlopeOf(*slopes, output, in_.observed.variables.size(), step_.rates());
+}
+
+Interval Observation::Acceleration(size_t output) {
+  if (accelerations_.empty()) accelerations_ = Accelerations(in_.dynamics, in_.observed, step_.region());
+  return accelerations_[output];
 }
 
 bool Observation::StaysBelow(size_t output) {

@@ -18,6 +18,8 @@ class Observation {
   bool StaysBelow(size_t output);
   /// Encloses the derivative of a term, per second; everything if it depends on inputs, which jump.
   Interval Slope(size_t output);
+  /// Encloses its second derivative; everything unless that exists, and the first one is continuous.
+  Interval Acceleration(size_t output);
 
  private:
   Interval Range(size_t output, double from, double to);
@@ -30,7 +32,21 @@ class Observation {
   std::optional<std::vector<Model>> models_;
   std::optional<OnBox> slopes_;
   bool no_slopes_ = false;
+  std::vector<Interval> accelerations_;
 };
+
+/// Does the condition hold for sure, and by more than a touch? What is zero may hold for this instant only,
+/// and do nothing.
+///
+/// @param range  of the condition's terms.
+template <typename Range>
+bool HoldsOn(const ModeGuard& guard, const Range& range) {
+  const Truth truth = guard.formula.Check([&](size_t atom) {
+    const Interval r = range(atom);
+    return r.hi == 0 ? Interval{r.lo, 0x1p-1000} : r;
+  });
+  return truth == Truth::kTrue;
+}
 
 /// The range of a term that is known to be at most zero.
 inline Interval AtMostZero(Interval range) { return {std::fmin(range.lo, 0), std::fmin(range.hi, 0)}; }

@@ -15,6 +15,8 @@ base::Result<std::unique_ptr<System>> System::Of(const Problem& problem) {
   auto modes = Modes::Of(problem);
   if (!modes.ok()) return modes.error();
   system->modes_ = std::move(modes).value();
+  for (size_t k = 0; k < system->modes_.states().size(); ++k)
+    system->stand_ins_.push_back(problem.arena->FreshConstant("unused", problem.arena->Real()));
   auto assumed = Normalise(*problem.arena, problem.assume);
   if (!assumed.ok()) return assumed.error();
   system->assumed_ = std::move(assumed).value();
@@ -44,52 +46,84 @@ bool System::IsSample(const Rational& instant) const {
   return count.Floor() == count;
 }
 
-base::Result<std::shared_ptr<const ModeSystem>> System::For(const Mode& mode) {
+bool System::AreOpposite(TermId a, TermId b) {
   const std::lock_guard lock(mutex_);
-  auto& known = made_[mode];
+  expr::Arena& arena = *problem_->arena;
+  return arena.Add(a, b) == arena.Number(arena.Real(), Rational(0));
+}
+
+base::Result<std::shared_ptr<const ModeSystem>> System::For(const std::vector<Mode>& modes) {
+  const std::lock_guard lock(mutex_);
+  auto& known = made_[modes];
   if (known != nullptr) return known;
-  auto made = Make(mode);
+  auto made = Make(modes);
   if (made.ok()) known = made.value();
   return made;
 }
 
-base::Result<std::shared_ptr<const ModeSystem>> System::Make(const Mode& mode) {
+// The claims and events of one mode; their terms go to the end of `terms`.
+base::Result<bool> System::Observe(ModeSystem& system, size_t mode, std::vector<TermId>& terms) {
   const Problem& problem = *problem_;
   expr::Arena& arena = *problem.arena;
-  auto system = std::make_shared<ModeSystem>();
-  system->mode = mode;
-  system->discrete.resize(problem.states.size());
-  for (size_t k = 0; k < mode.size(); ++k)
-    system->discrete[modes_.states()[k]] = Enclose(arena.number(mode[k]));
-  std::vector<TermId> variables = problem.states;
-  for (const Input& input : problem.inputs) {
-    variables.push_back(input.term);
-    system->dynamics.inputs.push_back(input.bounds);
-  }
-  std::vector<TermId> terms;
+  const Mode& in = system.modes[mode];
   const auto observe = [&](const Formula& formula) {
     const size_t first = terms.size();
     terms.insert(terms.end(), formula.terms.begin(), formula.terms.end());
     return first;
   };
   for (const Claim& claim : problem.claims) {
-    auto formula = Normalise(arena, modes_.In(mode, claim.formula));
+    auto formula = Normalise(arena, modes_.In(in, claim.formula));
     if (!formula.ok()) return formula.error();
     const size_t first = observe(formula.value());
-    system->claims.push_back({&claim, std::move(formula).value(), first, {}, {}});
+    system.claims.push_back({&claim, mode, std::move(formula).value(), first, {}, {}});
   }
   for (size_t e = 0; e < problem.events.size(); ++e) {
-    auto formula = Normalise(arena, modes_.In(mode, problem.events[e].condition));
+    auto formula = Normalise(arena, modes_.In(in, problem.events[e].condition));
     if (!formula.ok()) return formula.error();
-    auto after = modes_.After(mode, e);
+    auto after = modes_.After(in, e);
     if (!after.ok()) return after.error();
-    if (after.value() == mode) continue;  // nothing happens
+    if (after.value() == in) continue;  // nothing happens
     const size_t first = observe(formula.value());
-    system->guards.push_back({e, std::move(formula).value(), first, std::move(after).value()});
+    system.guards.push_back({mode, e, std::move(formula).value(), first, std::move(after).value()});
+  }
+  return true;
+}
+
+base::Result<std::shared_ptr<const ModeSystem>> System::Make(const std::vector<Mode>& modes) {
+  const Problem& problem = *problem_;
+  expr::Arena& arena = *problem.arena;
+  auto system = std::make_shared<ModeSystem>();
+  system->modes = modes;
+  std::vector<TermId> variables = problem.states;
+  for (const Input& input : problem.inputs) {
+    variables.push_back(input.term);
+    system->dynamics.inputs.push_back(input.bounds);
+  }
+  // Programs know the discrete states as numbers or as inputs: in the place of the state stands a name that
+  // none uses.
+  system->discrete.resize(problem.states.size());
+  expr::Substitution values;
+  for (size_t k = 0; k < modes_.states().size(); ++k) {
+    const size_t state = modes_.states()[k];
+    Interval all = Enclose(arena.number(modes[0][k]));
+    for (const Mode& m : modes) all = interval::Hull(all, Enclose(arena.number(m[k])));
+    system->discrete[state] = all;
+    if (std::ranges::all_of(modes, [&](const Mode& m) { return m[k] == modes[0][k]; })) {
+      values.emplace(problem.states[state], modes[0][k]);
+    } else {
+      variables[state] = stand_ins_[k];
+      variables.push_back(problem.states[state]);
+      system->dynamics.inputs.push_back(all);
+    }
+  }
+  std::vector<TermId> terms;
+  for (size_t mode = 0; mode < modes.size(); ++mode) {
+    auto observed = Observe(*system, mode, terms);
+    if (!observed.ok()) return observed.error();
   }
   std::string wrong;
-  const auto compile = [&](std::vector<TermId> functions, bool in_mode, Program& out) {
-    for (TermId& f : functions) f = in_mode ? modes_.In(mode, f) : f;
+  const auto compile = [&](std::vector<TermId> functions, Program& out) {
+    for (TermId& f : functions) f = expr::Substitute(arena, f, values);
     auto made = Compile(arena, variables, functions);
     if (!made.ok()) {
       wrong = made.error().message;
@@ -98,12 +132,12 @@ base::Result<std::shared_ptr<const ModeSystem>> System::Make(const Mode& mode) {
     }
   };
   system->dynamics.states = problem.states.size();
-  compile(problem.rates, true, system->dynamics.rates);
-  compile(terms, false, system->observed);
+  compile(problem.rates, system->dynamics.rates);
+  compile(terms, system->observed);
   if (problem.controller) {
     // A controller sets no discrete state.
     std::vector<TermId> updated = Updated(problem);
-    compile(updated, true, system->control);
+    compile(updated, system->control);
   }
   if (!wrong.empty()) return base::Error{wrong};
   FindKnown(*system);
@@ -135,7 +169,7 @@ void System::FindKnown(ModeSystem& system) const {
       claim.starts_below.push_back(below && continuous && claim.claim->from == Rational(0));
       // If the term rises above zero, an event with the condition -term <= 0 happens.
       claim.implied.push_back(std::ranges::any_of(system.guards, [&](const ModeGuard& g) {
-        return g.IsComparison() && arena.Add(g.formula.terms[0], term) == zero;
+        return g.mode == claim.mode && g.IsComparison() && arena.Add(g.formula.terms[0], term) == zero;
       }));
     }
   }
