@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "expr/elementary.h"
 
 namespace rondo::expr {
 
@@ -138,15 +139,18 @@ TermId Arena::Intern(Op op, SortId sort, uint32_t payload, std::span<const TermI
   }
   bool open = op == Op::kVariable && symbol(SymbolId(payload)).bound;
   bool quantified = op == Op::kForall || op == Op::kExists;
+  bool partial = op == Op::kElementary && IsPartialFunction(static_cast<Elementary>(payload));
   for (const TermId arg : copy) {
     open = open || open_[arg.index()];
     quantified = quantified || quantified_[arg.index()];
+    partial = partial || partial_[arg.index()];
   }
   if (quantified && (op == Op::kForall || op == Op::kExists)) {
     open = HasFreeBound(copy.back(), std::span(copy).first(payload));
   }
   open_.push_back(open);
   quantified_.push_back(quantified);
+  partial_.push_back(partial);
   return candidate;
 }
 

@@ -139,6 +139,9 @@ class Arena {
   /// Does a variable of a quantifier occur outside that quantifier? Such terms make no sense on their own.
   bool IsOpen(TermId id) const { return open_[id.index()]; }
   bool HasQuantifier(TermId id) const { return quantified_[id.index()]; }
+  /// May some part of it have no value (a root, a logarithm, an arcsine or arccosine)? What is simplified
+  /// keeps where such parts have one (docs/adr/0005-undefined-terms.md).
+  bool IsPartial(TermId id) const { return partial_[id.index()]; }
   size_t size() const { return terms_.size(); }
 
   /// The operator applied as it stands, nothing simplified: for tests and for rebuilding.
@@ -165,6 +168,8 @@ class Arena {
   TermId Junction(Op op, const std::vector<TermId>& args);
   TermId Quantify(Op op, const std::vector<TermId>& variables, TermId body);
   TermId Compare(Op op, TermId a, TermId b);
+  TermId Zero(TermId t);
+  TermId IfDefined(TermId a, TermId b, bool holds);
   /// a - b if that is a number whatever the variables are.
   std::optional<Rational> ConstantDistance(TermId a, TermId b) const;
 
@@ -179,6 +184,7 @@ class Arena {
   std::vector<TermId> pool_;
   std::vector<bool> open_;
   std::vector<bool> quantified_;
+  std::vector<bool> partial_;
   std::unordered_set<TermId, Hash, Equal> interned_;
   SortId bool_, int_, real_;
   TermId true_, false_;

@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "expr/arena.h"
+#include "expr/defined.h"
 
 namespace rondo::expr {
 namespace {
@@ -64,7 +65,10 @@ TermId Arena::Add(std::vector<TermId> args) {
   std::vector<TermId> parts;
   if (!sum.constant.IsZero()) parts.push_back(Number(s, sum.constant));
   for (const auto& [t, coefficient] : sum.coefficients) {
-    if (coefficient.IsZero()) continue;
+    if (coefficient.IsZero()) {
+      if (IsPartial(t)) parts.push_back(Zero(t));
+      continue;
+    }
     parts.push_back(
         coefficient == Rational(1) ? t : Intern(Op::kMul, s, 0, std::vector{Number(s, coefficient), t}));
   }
@@ -80,6 +84,22 @@ TermId Arena::Add(std::vector<TermId> args) {
   return plain ? result : Fire(Rewrite::kAddNormal, Op::kAdd, s, 0, std::move(args), result);
 }
 
+// 0 * t: zero where t has a value, else none.
+TermId Arena::Zero(TermId t) {
+  const TermId zero = Number(sort_of(t), Rational(0));
+  if (!IsPartial(t)) return zero;
+  const auto defined = [&](TermId part) { return Complement(*this, Undefined(*this, part)); };
+  if (op(t) == Op::kIte && arg(t, 1) == zero && arg(t, 0) == defined(arg(t, 2)))
+    return t;  // it is one already
+  return Ite(defined(t), zero, t);
+}
+
+// An atomic formula about a and b that holds wherever they have values, or nowhere.
+TermId Arena::IfDefined(TermId a, TermId b, bool holds) {
+  if (!holds) return false_;
+  return And(Complement(*this, Undefined(*this, a)), Complement(*this, Undefined(*this, b)));
+}
+
 TermId Arena::Neg(TermId a) { return Mul(Number(sort_of(a), Rational(-1)), a); }
 
 TermId Arena::Mul(TermId a, TermId b) {
@@ -91,7 +111,7 @@ TermId Arena::Mul(TermId a, TermId b) {
   if (IsNumber(a) && IsNumber(b)) return fire(Rewrite::kMulConstants, Number(s, number(a) * number(b)));
   if (IsNumber(b)) return fire(Rewrite::kMulOrder, Mul(b, a));
   if (IsNumber(a)) {
-    if (number(a).IsZero()) return fire(Rewrite::kMulConstants, a);
+    if (number(a).IsZero()) return fire(Rewrite::kMulConstants, Zero(b));
     if (number(a) == Rational(1)) return fire(Rewrite::kMulConstants, b);
     if (op(b) == Op::kAdd || (op(b) == Op::kMul && IsNumber(arg(b, 0)))) {
       Linear sum;
@@ -141,7 +161,7 @@ TermId Arena::Compare(Op op, TermId a, TermId b) {
   CHECK(sort_of(a) == sort_of(b) && (sort_of(a) == int_ || sort_of(a) == real_));
   if (const auto distance = ConstantDistance(a, b)) {
     const bool holds = op == Op::kLe ? *distance <= Rational(0) : *distance < Rational(0);
-    return Fire(Rewrite::kCompareDistance, op, bool_, 0, {a, b}, Constant(holds));
+    return Fire(Rewrite::kCompareDistance, op, bool_, 0, {a, b}, IfDefined(a, b, holds));
   }
   return Intern(op, bool_, 0, std::vector{a, b});
 }

@@ -1,17 +1,17 @@
 #include "expr/defined.h"
 
+#include "expr/elementary.h"
 #include "expr/substitute.h"
 
 namespace rondo::expr {
 
 TermId Undefined(Arena& arena, TermId term) {
+  if (!arena.IsPartial(term)) return arena.False();
   std::vector<TermId> partial;
   std::unordered_set<TermId> seen;
   VisitPostorder(arena, term, seen, [&](TermId t) {
     if (arena.op(t) != Op::kElementary) return;
-    const Elementary f = arena.elementary_of(t);
-    if (f == Elementary::kSqrt || f == Elementary::kLog || f == Elementary::kAsin || f == Elementary::kAcos)
-      partial.push_back(t);
+    if (IsPartialFunction(arena.elementary_of(t))) partial.push_back(t);
   });
   const auto number = [&](int64_t n) { return arena.Number(arena.Real(), Rational(n)); };
   std::vector<TermId> outside;
@@ -33,7 +33,7 @@ TermId Undefined(Arena& arena, TermId term) {
 }
 
 TermId Complement(Arena& arena, TermId formula) {
-  if (Undefined(arena, formula) == arena.False()) return arena.Not(formula);
+  if (!arena.IsPartial(formula)) return arena.Not(formula);
   const std::vector<TermId> args(arena.args(formula).begin(), arena.args(formula).end());
   std::vector<TermId> parts;
   switch (arena.op(formula)) {

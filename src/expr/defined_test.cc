@@ -45,6 +45,36 @@ TEST_F(Terms, NestedFunctionsAreDefinedFromTheInside) {
   EXPECT_GT(Miss(undefined, 4), 0);
 }
 
+// What is simplified away keeps where it has a value.
+TEST_F(Terms, NothingWithoutAValueIsSimplifiedAway) {
+  const TermId root = Root(x);
+  const TermId log = arena.Apply(Elementary::kLog, {x});
+  const TermId zero = Number(0);
+  for (const TermId gone :
+       {arena.Mul(zero, root), arena.Sub(root, root), arena.Mul(zero, arena.Add(arena.Mul(x, root), x)),
+        arena.Add({arena.Mul(Number(2), root), arena.Mul(Number(-2), root)}),
+        arena.Sub(arena.Mul(zero, root), arena.Mul(zero, root))}) {
+    EXPECT_TRUE(arena.IsPartial(gone));
+    EXPECT_EQ(Miss(arena.Eq(gone, zero), 2), 0);
+    EXPECT_GT(Miss(arena.Eq(gone, zero), -2), 0);
+    EXPECT_GT(Miss(arena.Not(arena.Eq(gone, zero)), -2), 0);
+    EXPECT_EQ(arena.Sub(gone, gone), gone);
+  }
+  for (const TermId formula : {arena.Le(root, root), arena.Lt(root, arena.Add(root, Number(1))),
+                               arena.Eq(root, root), arena.Le(arena.Add(x, root), arena.Add(root, x))}) {
+    EXPECT_EQ(Miss(formula, 2), 0);
+    EXPECT_GT(Miss(formula, -2), 0);
+  }
+  for (const TermId formula : {arena.Lt(root, root), arena.Lt(log, arena.Sub(log, Number(1)))})
+    EXPECT_EQ(formula, arena.False());
+  const TermId one = arena.Eq(root, Number(1));
+  EXPECT_GT(Miss(arena.Or(one, arena.Not(one)), -2), 0);
+  EXPECT_EQ(arena.And(one, arena.Not(one)), arena.False());
+  // Without such parts, nothing changes.
+  EXPECT_EQ(arena.Mul(zero, x), zero);
+  EXPECT_EQ(arena.Le(x, x), arena.True());
+}
+
 TEST_F(Terms, ACopyMeansTheSame) {
   const TermId f =
       arena.Or(arena.Lt(Root(arena.Mul(x, x)), Number(2)), arena.Eq(arena.Divide(x, Number(3)), Number(5)));

@@ -77,6 +77,8 @@ TermId Arena::Junction(Op op, const std::vector<TermId>& args) {
     }
   }
   for (const TermId a : kept) {
+    // Both may be false: an atomic formula about what has no value, and its negation.
+    if (op == Op::kOr && IsPartial(a)) continue;
     if (this->op(a) == Op::kNot && seen.contains(arg(a, 0))) {
       fired.push_back(Rewrite::kJunctionOpposite);
       result = zero;
@@ -101,7 +103,7 @@ TermId Arena::Eq(TermId a, TermId b) {
   const auto fire = [&](Rewrite rewrite, TermId result) {
     return Fire(rewrite, Op::kEq, bool_, 0, {a, b}, result);
   };
-  if (a == b) return fire(Rewrite::kEqReflexive, true_);
+  if (a == b) return fire(Rewrite::kEqReflexive, sort_of(a) == bool_ ? true_ : IfDefined(a, b, true));
   const bool constants = (op(a) == Op::kNumber || op(a) == Op::kMember) && op(a) == op(b);
   if (constants) return fire(Rewrite::kEqConstants, false_);
   if (sort_of(a) == bool_) {
@@ -117,7 +119,7 @@ TermId Arena::Eq(TermId a, TermId b) {
   }
   if (sort_of(a) == int_ || sort_of(a) == real_) {
     if (const auto distance = ConstantDistance(a, b))
-      return fire(Rewrite::kEqDistance, Constant(distance->IsZero()));
+      return fire(Rewrite::kEqDistance, IfDefined(a, b, distance->IsZero()));
   }
   if (b < a) return fire(Rewrite::kEqOrder, Intern(Op::kEq, bool_, 0, std::vector{b, a}));
   return Intern(Op::kEq, bool_, 0, std::vector{a, b});
@@ -130,7 +132,7 @@ TermId Arena::Ite(TermId c, TermId a, TermId b) {
     return Fire(rewrite, Op::kIte, s, 0, {c, a, b}, result);
   };
   if (op(c) == Op::kBool) return fire(Rewrite::kIteConstant, c == true_ ? a : b);
-  if (a == b) return fire(Rewrite::kIteSame, a);
+  if (a == b && !IsPartial(c)) return fire(Rewrite::kIteSame, a);
   if (op(c) == Op::kNot) return fire(Rewrite::kIteNot, Ite(arg(c, 0), b, a));
   if (s == bool_) {
     if (a == true_) return fire(Rewrite::kIteBoolean, Or(c, b));

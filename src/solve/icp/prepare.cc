@@ -282,20 +282,28 @@ class Preparation {
   bool Eliminate(std::vector<TermId>& conjuncts) {
     expr::Substitution map;
     std::optional<std::pair<TermId, TermId>> other;
+    std::unordered_set<TermId> used;  // says of itself only that it is defined, afterwards
+    TermId other_equation;
     for (const auto& [term, range] : out_.ranges) {
       const auto value = range.Only();
       if (!value) continue;
       const auto solved = Solve(term, *value);
       if (!solved) continue;
+      const TermId equation = ToFormula(arena_, {term, kEqual, *value});
       if (arena_.IsNumber(solved->second)) {
-        map.insert(*solved);
+        if (map.insert(*solved).second) used.insert(equation);
       } else if (!other) {
         other = solved;
+        other_equation = equation;
       }
     }
-    if (map.empty() && other) map.insert(*other);
+    if (map.empty() && other) {
+      map.insert(*other);
+      used.insert(other_equation);
+    }
     if (map.empty()) return false;
     conjuncts = Conjuncts(arena_, out_);
+    std::erase_if(conjuncts, [&](TermId c) { return used.contains(c); });
     for (const auto& [variable, definition] : map) {
       KeepDefined(definition, conjuncts);
       if (proof_ != nullptr) proof_->Substitute(variable, definition);
