@@ -10,6 +10,7 @@
 #include "driver/discharge.h"
 #include "driver/exit_status.h"
 #include "driver/interrupt.h"
+#include "driver/ranges.h"
 #include "driver/reachability.h"
 #include "driver/run_file.h"
 #include "driver/statistical.h"
@@ -34,6 +35,8 @@ struct Options {
   StatisticalOptions sampling;
   std::vector<std::string> sweep;  ///< the parameter, its range
   size_t parts = 64;
+  std::vector<std::string> ranges;
+  std::string between;
   std::string svg, save, certificates;
   bool no_certify = false;
   bool no_cache = false;
@@ -45,7 +48,7 @@ class Run {
   explicit Run(const Options& options) : options_(options) {}
 
   int operator()() {
-    if (!ReadSweep()) return kRejected;
+    if (!ReadSweep() || !ReadBetween() || !OptionsFit()) return kRejected;
     if (!Load()) return Finish(kRejected);
     if (!options_.contract.empty()) {
       std::erase_if(loaded_.results, [&](const ContractResult& r) {
@@ -76,7 +79,7 @@ class Run {
       const int own = StatusOf(r);
       if (own == kRejected || (own == kUndecided && status == kEstablished)) status = own;
     }
-    if (unwritten_) status = kRejected;
+    if (unwritten_ || wrong_range_) status = kRejected;
     status = Finish(status);
     for (const auto& [path, svg] : pictures_) {
       if (WritePicture(path, svg, options_.json) != kEstablished) status = kRejected;
@@ -92,17 +95,34 @@ class Run {
   // NAME FROM..TO
   bool ReadSweep() {
     if (options_.sweep.empty()) return true;
-    const std::string& range = options_.sweep[1];
-    const size_t dots = range.find("..");
-    const auto from = dots == std::string::npos ? std::nullopt : expr::Rational::Parse(range.substr(0, dots));
-    const auto to = dots == std::string::npos ? std::nullopt : expr::Rational::Parse(range.substr(dots + 2));
-    if (!from || !to || !(*from < *to)) {
-      PrintFailure(
-          fmt::format("`--sweep` takes a name and a range, as in `--sweep gain 0.5..4`: not `{}`", range));
+    const auto range = ReadRange(options_.sweep[1]);
+    if (!range || range->first == range->second) {
+      PrintFailure(fmt::format("`--sweep` takes a name and a range, as in `--sweep gain 0.5..4`: not `{}`",
+                               options_.sweep[1]));
       return false;
     }
-    loose_ = robot::Loose{options_.sweep[0], *from, *to};
+    loose_ = robot::Loose{options_.sweep[0], range->first, range->second};
     return true;
+  }
+
+  bool OptionsFit() const {
+    const bool asked = !options_.ranges.empty();
+    if (asked && (loose_ || options_.statistical)) {
+      PrintFailure("`--range` is about proofs: neither with `--sweep` nor with `--statistical`");
+      return false;
+    }
+    if (!asked && between_) PrintFailure("`--between` belongs to `--range`");
+    return asked || !between_;
+  }
+
+  // FROM..TO
+  bool ReadBetween() {
+    if (options_.between.empty()) return true;
+    between_ = ReadRange(options_.between);
+    if (!between_)
+      PrintFailure(
+          fmt::format("`--between` takes seconds, as in `--between 0.5..4`: not `{}`", options_.between));
+    return between_.has_value();
   }
 
   int SweepAll() {
@@ -191,7 +211,7 @@ class Run {
     line.Show(fmt::format("[{}/{}] {}", index + 1, loaded_.results.size(), name));
     // The same motion elsewhere, or of another robot of the same type, is proved already.
     reach::certify::Certificate certificate;
-    r.same_as = reuse_.Covers(r, certificate);
+    if (options_.ranges.empty()) r.same_as = reuse_.Covers(r, certificate);
     if (r.same_as.empty()) DecideContract(r, options, stop_);
     if (r.outcome && std::holds_alternative<reach::Proved>(*r.outcome))
       certificate = CertificateOf(std::get<reach::Proved>(*r.outcome));
@@ -199,6 +219,12 @@ class Run {
       line.Show(fmt::format("[{}/{}] {}: certifying", index + 1, loaded_.results.size(), name));
       CertifyContract(r, certificate, options_.jobs, stop_);
       if (r.IsCertified() && !options_.certificates.empty()) SaveCertificate(index, certificate);
+    }
+    if (!options_.ranges.empty()) {
+      line.Show(fmt::format("[{}/{}] {}: ranges", index + 1, loaded_.results.size(), name));
+      ranges_.resize(loaded_.results.size());
+      ranges_[index] = RangesOf(r, options_.ranges, between_, options_.jobs, stop_);
+      wrong_range_ = wrong_range_ || (VerdictOf(r) == "proved" && !ranges_[index].trouble.empty());
     }
     StoreProved(r, cache_);
     if (index + 1 < loaded_.results.size()) reuse_.Remember(r, std::move(certificate));
@@ -253,7 +279,10 @@ class Run {
   int Finish(int status) {
     if (options_.json) {
       nlohmann::json list = nlohmann::json::array();
-      for (const ContractResult& r : loaded_.results) list.push_back(ToJson(r));
+      for (size_t i = 0; i < loaded_.results.size(); ++i) {
+        list.push_back(ToJson(loaded_.results[i]));
+        if (i < ranges_.size()) list.back()["ranges"] = ToJson(ranges_[i]);
+      }
       PrintJson({{"command", "reach"},
                  {"status", status},
                  {"contracts", list},
@@ -264,6 +293,8 @@ class Run {
       return status;
     }
     if (!loaded_.results.empty()) Print(ContractTable(loaded_.results));
+    for (size_t i = 0; i < ranges_.size(); ++i)
+      Print(fmt::format("{}:\n{}", loaded_.results[i].made.problem.name, ToText(ranges_[i])));
     for (const std::string& motion : loaded_.left_out) Print(fmt::format("not looked at: {}\n", motion));
     if (!session_.diagnostics.all().empty()) {
       if (!loaded_.results.empty()) Print("\n");
@@ -304,6 +335,9 @@ class Run {
   base::StopToken stop_;
   LoadedContracts loaded_;
   std::optional<robot::Loose> loose_;
+  std::optional<std::pair<expr::Rational, expr::Rational>> between_;
+  std::vector<Ranges> ranges_;  ///< by contract, if there are any to look at
+  bool wrong_range_ = false;
   TubeReuse reuse_;
   std::vector<std::string> saved_, certificates_;
   bool unwritten_ = false;
@@ -326,6 +360,10 @@ void AddReachVerb(CLI::App& app, int& status) {
       .Takes(2, "NAME FROM..TO");
   verb.Option("--parts", options->parts, "of --sweep: how finely the range is divided, at most; default: 64")
       .Between(size_t{1}, size_t{65536});
+  verb.Option("--range", options->ranges,
+              "a quantity such as `abs(x - y) + 2 cm`: what it can be, if the contract is proved")
+      .OneEach();
+  verb.Option("--between", options->between, "of --range: FROM..TO, in seconds; default: all the time");
   verb.Option("--svg", options->svg, "write a picture: tubes, samples, starts and bounds");
   verb.Option("--save", options->save, "where trajectories that break a contract go, for `rondo replay`");
   verb.Flag("--statistical", options->statistical,

@@ -101,6 +101,24 @@ def sweeps(rondo, folder):
     check(run(rondo, "reach", "--sweep", "damping", "1", model).returncode == 1, "no range")
 
 
+# x = -(1 + 2 t) exp(-2 t), v = 4 t exp(-2 t).
+def ranges(rondo, folder):
+    model = folder / "ball.rondo"
+    done = run(rondo, "reach", "--json", "--no-cache", "--range", "v", "--range", "x + 1 m * sin(clock * 0)", model)
+    check(done.returncode == 1 and "clock" in done.stdout, f"what is not there cannot be asked for: {done.stdout}")
+    done = run(rondo, "reach", "--json", "--no-cache", "--range", "v", "--range", "abs(x) - 2 cm", model)
+    found = json.loads(done.stdout)["contracts"][0]["ranges"]
+    check(done.returncode == 0 and [r["unit"] for r in found] == ["m/s", "m"] and found[0]["to"] == 5, f"{found}")
+    check(0.735758 < found[0]["most"] < 0.736 and -1e-3 < found[0]["least"] <= 0, f"the speed is {found[0]}")
+    check(0.98 <= found[1]["most"] < 0.981 and -0.03 < found[1]["least"] < -0.0195, f"{found[1]}")
+    done = run(rondo, "reach", "--json", "--no-cache", "--range", "v", "--between", "0.5..0.5", model)
+    one = json.loads(done.stdout)["contracts"][0]["ranges"][0]
+    check(0.73575 < one["least"] <= 0.7357588823428847 <= one["most"] < 0.73577, f"{one}")
+    for wrong in (["--range", "v +"], ["--range", "v < 1"], ["--range", "v + x"], ["--range", "v", "--between", "9..10"],
+                  ["--range", "v", "--between", "2..1"], ["--between", "1..2"], ["--range", "v", "--statistical"]):
+        check(run(rondo, "reach", "--no-cache", *wrong, model).returncode == 1, f"{wrong} is refused")
+
+
 def reuse(rondo):
     done = run(rondo, "reach", "--json", "--no-cache", ROOT / "examples" / "choreo" / "driven.rondo")
     contracts = json.loads(done.stdout)["contracts"]
@@ -210,6 +228,7 @@ def main():
         replays(rondo, folder)
         pictures(rondo, folder)
         sweeps(rondo, folder)
+        ranges(rondo, folder)
         reuse(rondo)
         certificates(rondo, folder)
         samples(rondo, folder)

@@ -139,7 +139,7 @@ class Builder {
       });
       if (!actuator) continue;
       if (!v.least || !v.most) return fmt::format("the input `{}` has no bounds", v.name.text);
-      instance.unknowns.push_back({v.name.text, v.term, *v.least, *v.most});
+      instance.unknowns.push_back({v.name.text, v.term, *v.least, *v.most, v.dimension});
       if (arena_.IsNumber(*v.least) && arena_.IsNumber(*v.most)) {
         out.domain.push_back(fmt::format("{} in [{:.6g}, {:.6g}]", v.name.text,
                                          arena_.number(*v.least).ToDouble(),

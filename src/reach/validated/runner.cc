@@ -13,6 +13,7 @@ namespace rondo::reach {
 namespace {
 
 constexpr int kMostHalvings = 6;  // of the time of a step, for a claim
+constexpr int kSlices = 16;       // of the time of a step, for a query
 constexpr size_t kMostForks = 64;
 constexpr size_t kMostSplits = 63;  // at events, of one part
 constexpr size_t kMostDeep = 7;     // of one start
@@ -90,7 +91,14 @@ void Runner::Answer(Flow& flow, const Stage& stage, double from, double to) {
     if (query.from > to || query.to < from) continue;
     const double begin = sharp ? std::clamp(query.from - from, 0.0, stepper.h()) : 0;
     const double end = sharp ? std::clamp(query.to - from, begin, stepper.h()) : stepper.h();
-    answers_[q.query] = interval::Hull(answers_[q.query], stepper.Observed(q.output, begin, end, true));
+    // Slices: polynomials are enclosed more sharply over short times.
+    const int slices = end > begin ? kSlices : 1;
+    for (int k = 0; k < slices; ++k) {
+      const double from_here = begin + (end - begin) * k / slices;
+      const double to_here = k + 1 == slices ? end : begin + (end - begin) * (k + 1) / slices;
+      answers_[q.query] =
+          interval::Hull(answers_[q.query], stepper.Observed(q.output, from_here, to_here, true));
+    }
   }
 }
 

@@ -102,8 +102,10 @@ class Builder {
     return VariablesOf(arena_, terms).contains(input);
   }
 
-  void Add(const std::string& name, TermId term, TermId rate, const Variable* variable) {
+  void Add(const std::string& name, TermId term, TermId rate, const Variable* variable,
+           lang::Dimension dimension) {
     reach::Problem& p = out_.problem;
+    out_.scope.names.emplace(name, Quantity(term, dimension));
     p.states.push_back(term);
     p.rates.push_back(rate);
     out_.names.push_back(name);
@@ -148,20 +150,27 @@ class Builder {
         return fmt::format(
             "`{}` is not in `modifies`, but its rate under the motion's controller is not zero", v.name.text);
       }
-      Add(v.name.text, v.term, rate, &v);
+      Add(v.name.text, v.term, rate, &v, v.dimension);
     }
     for (const Variable& v : body_.memory) {
       if (laws.contains(v.term))
         return fmt::format("`{}` is memory: it needs a controller with a period", v.name.text);
-      Add(v.name.text, v.term, Zero(), &v);
+      Add(v.name.text, v.term, Zero(), &v, v.dimension);
     }
     for (const Variable& v : body_.inputs) {
-      if (Sampled(v.term)) Add(v.name.text, v.term, Zero(), ReadBeforeSet(v.term) ? &v : nullptr);
+      if (Sampled(v.term))
+        Add(v.name.text, v.term, Zero(), ReadBeforeSet(v.term) ? &v : nullptr, v.dimension);
     }
-    if (UsesClock()) Add("clock", world_.clock, arena_.Number(arena_.Real(), Rational(1)), nullptr);
-    for (const MotionInstance::Unknown& u : motion_.unknowns) Add(u.name, u.term, Zero(), nullptr);
-    for (const auto& [copy, state] : motion_.copies)
-      Add(arena_.symbol(arena_.symbol_of(copy)).name, copy, Zero(), nullptr);
+    if (UsesClock())
+      Add("clock", world_.clock, arena_.Number(arena_.Real(), Rational(1)), nullptr,
+          lang::Dimension{.time = 1});
+    for (const MotionInstance::Unknown& u : motion_.unknowns)
+      Add(u.name, u.term, Zero(), nullptr, u.dimension);
+    for (const auto& [copy, state] : motion_.copies) {
+      const auto of = std::ranges::find(body_.states, state, &Variable::term);
+      Add(arena_.symbol(arena_.symbol_of(copy)).name, copy, Zero(), nullptr,
+          of == body_.states.end() ? lang::Dimension{} : of->dimension);
+    }
     if (motion_.control && motion_.control->period) {
       const auto period = Constant(arena_, motion_.control->period);
       if (!period || !(*period > Rational(0))) return "the period of the controller is no positive constant";
@@ -208,6 +217,8 @@ class Builder {
       const auto most = ConstantRange(arena_, it->second->most);
       if (!least || !most) return fmt::format("the input `{}` has no bounds", it->second->name.text);
       p.inputs.push_back({t, {least->lo, most->hi}});
+      if (std::ranges::find(body_.inputs, t, &Variable::term) != body_.inputs.end())
+        out_.scope.names.emplace(it->second->name.text, Quantity(t, it->second->dimension));
       out_.assumed.push_back(fmt::format("`{}` in [{:.6g}, {:.6g}]", name, least->lo, most->hi));
     }
     // The contract assumes more of them.
@@ -473,7 +484,7 @@ std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World&
       const auto least = e.Measure(p.least, body.scope, *d, "a bound");
       const auto most = e.Measure(p.most, body.scope, *d, "a bound");
       if (!least || !most) return all;
-      instance.unknowns.push_back({p.name.text, some, *least, *most});
+      instance.unknowns.push_back({p.name.text, some, *least, *most, *d});
     }
     if (!known) continue;
     if (parameter) {

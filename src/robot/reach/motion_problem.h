@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "diag/diagnostic.h"
 #include "reach/system/problem.h"
 #include "robot/model/world.h"
 
@@ -26,6 +27,7 @@ struct MotionInstance {
     std::string name;
     TermId term;
     TermId least, most;
+    lang::Dimension dimension = {};
   };
   std::vector<Unknown> unknowns;
   /// (variable, state): the variable is what the state was at the start.
@@ -39,6 +41,7 @@ struct MotionProblem {
   reach::Problem problem;
   size_t robot_states = 0;           ///< the first ones: the robot's own, without memory, clock and the like
   std::vector<std::string> names;    ///< by state
+  Scope scope;                       ///< the states and the robot's inputs: what one may ask about
   std::vector<std::string> assumed;  ///< what a proof of it rests on, for people
 };
 
@@ -53,6 +56,11 @@ struct MotionProblem {
 /// nothing but whose robot moves anyway.
 base::Result<MotionProblem> ProblemOf(const World& world, const Body& body, const MotionInstance& instance,
                                       Arena& arena);
+
+/// Reads a quantity that is computed from what `problem` is about, in the language of models: `abs(x - y) + 2
+/// cm`. nullopt if it is none; why is reported, and stands in `text`.
+std::optional<Value> QuantityOf(const std::string& text, const MotionProblem& problem, Arena& arena,
+                                diag::SourceSet& sources, diag::Diagnostics& diagnostics);
 
 /// A parameter of a robot type that may have any value between two bounds instead of its own.
 struct Loose {
