@@ -10,8 +10,9 @@ struct FlowOptions {
   size_t order = 0;         ///< of Taylor series in time; 0: 8, and 20 for a single point
   size_t least_degree = 1;  ///< of polynomials in the initial state
   size_t most_degree = 10;
-  size_t most_monomials = 800;  ///< a bound on the cost of a degree
-  double first_step = 1e-3;     ///< seconds
+  size_t most_monomials = 800;   ///< a bound on the cost of a degree
+  size_t cheap_monomials = 400;  ///< degrees with more are only for errors far beyond the tolerance
+  double first_step = 1e-3;      ///< seconds
   double most_step = 0.25;
   double least_step = 1e-9;
   /// How much one step may add to errors, for its share of the horizon: relative to the set's radius, ...
@@ -50,7 +51,7 @@ class Flow {
 
  private:
   void Settle(FlowSet& set, double time) const;
-  size_t MostDegree() const;
+  bool IsWorthIt(double excess) const;
   void AdaptDegree();
 
   FlowOptions options_;
