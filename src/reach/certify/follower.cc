@@ -14,8 +14,6 @@ constexpr size_t kPointOrder = 20;  // if the start is a single point
 constexpr double kLeastStep = 1e-10;
 constexpr size_t kMostSteps = 300'000;
 constexpr size_t kMostMonomials = 1000;
-constexpr size_t kMostRounds = 32;  // of events at one instant
-constexpr size_t kMostPossible = 64;
 constexpr size_t kMostHalves = 1000;  // of symbols
 
 }  // namespace

@@ -61,7 +61,8 @@ class Follower {
   bool IsQuiet(Place& place, Observation& seen) const;
   bool Wander(Place& place, double wanted);
   bool Fork(const Place& place);
-  std::vector<Possible> Reached(const ModeSystem& in, Observation& seen, std::vector<Possible> before);
+  std::optional<std::vector<Possible>> Reached(const ModeSystem& in, Observation& seen,
+                                               std::vector<Possible> before);
   bool Fail(std::string reason);
 
   bool IsDue(const Place& place, const ModeClaim& claim) const;
@@ -71,6 +72,9 @@ class Follower {
   bool Move(Place& place, const Pace& whole, const ModeGuard* expected, double* slope);
   bool Switch(Place& place, const ModeGuard& guard, double slope);
   bool HoldsAround(const Place& place, const ModeSystem& in, const ReachSet& set, const ModeGuard* expected);
+
+  static constexpr size_t kMostRounds = 32;  ///< of events at one instant, or in one step
+  static constexpr size_t kMostPossible = 64;
 
   System& system_;
   Bases& bases_;

@@ -12,8 +12,6 @@ namespace rondo::reach::certify {
 
 namespace {
 
-constexpr size_t kMostRounds = 32;
-constexpr size_t kMostPossible = 64;
 constexpr size_t kMostForks = 64;
 
 }  // namespace
@@ -39,9 +37,10 @@ bool Follower::IsQuiet(Place& place, Observation& seen) const {
   return true;
 }
 
-// What is possible at some time of the step, if `before` is possible when it begins.
-std::vector<Follower::Possible> Follower::Reached(const ModeSystem& in, Observation& seen,
-                                                  std::vector<Possible> before) {
+// What is possible at some time of the step, if `before` is possible when it begins. Nothing if that is too
+// much.
+std::optional<std::vector<Follower::Possible>> Follower::Reached(const ModeSystem& in, Observation& seen,
+                                                                 std::vector<Possible> before) {
   // A possibility, and, if the mode was entered in this step, the comparison that became true then.
   struct Course {
     Possible now;
@@ -91,6 +90,7 @@ std::vector<Follower::Possible> Follower::Reached(const ModeSystem& in, Observat
       if (!known) courses.push_back(std::move(next));
     }
   }
+  if (courses.size() > kMostPossible) return std::nullopt;
   std::vector<Possible> all;
   for (Course& c : courses) {
     if (std::ranges::find(all, c.now) == all.end()) all.push_back(std::move(c.now));
@@ -112,8 +112,9 @@ bool Follower::Wander(Place& place, double wanted) {
     double taken = wanted;
     if (!Take(step, from, taken)) return false;
     Observation seen(in, step);
-    std::vector<Possible> all = Reached(in, seen, place.possible);
-    if (all.size() > kMostPossible) return Fail("too many modes are possible");
+    auto reached = Reached(in, seen, place.possible);
+    if (!reached) return Fail("too many modes are possible");
+    std::vector<Possible> all = std::move(*reached);
     const size_t before = modes.size();
     for (const Possible& p : all) modes.insert(p.mode);
     if (modes.size() > before) continue;

@@ -83,13 +83,13 @@ bool Runner::Happened(State& state, const Stage& stage, Map& observe) {
   return true;
 }
 
-// All that is possible after the step, given what is possible before it (`all`).
+// All that is possible after the step, given what is possible before it (`all`). False if that is too much.
 //
 // A comparison `h <= 0` that is false just after a mode begins becomes true by h falling to zero. So it stays
 // false where h does not fall. That h does not fall is known from its rate, or, where its second derivative
 // is positive, from its having risen once. When a mode begins because h has fallen, `-h <= 0` is false just
 // after that, if one of the two is strict.
-void Runner::Successors(const Stage& stage, Flow& flow, std::vector<Possible>& all) const {
+bool Runner::Successors(const Stage& stage, Flow& flow, std::vector<Possible>& all) const {
   Stepper& stepper = flow.stepper();
   struct Entry {
     Possible possible;
@@ -137,6 +137,7 @@ void Runner::Successors(const Stage& stage, Flow& flow, std::vector<Possible>& a
   for (const Entry& entry : open) {
     if (std::ranges::find(all, entry.possible) == all.end()) all.push_back(entry.possible);
   }
+  return open.size() <= kMostPossible;
 }
 
 // A step during which it is not certain which events happen.
@@ -166,8 +167,7 @@ Runner::Next Runner::Window(const Flow& before, State& state, double until) {
         });
       });
     }
-    Successors(stage, flow, all);
-    if (all.size() > kMostPossible) return failed("too many modes are possible");
+    if (!Successors(stage, flow, all)) return failed("too many modes are possible");
     const bool closed = std::ranges::all_of(all, [&](const Possible& p) {
       return std::ranges::find(closure, p.mode, &Possible::mode) != closure.end();
     });

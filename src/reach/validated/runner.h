@@ -86,7 +86,7 @@ class Runner {
   Truth During(const Guard& guard, Flow& flow) const;
   bool Happened(State& state, const Stage& stage, Map& observe);
   Next Window(const Flow& before, State& state, double until);
-  void Successors(const Stage& stage, Flow& flow, std::vector<Possible>& all) const;
+  bool Successors(const Stage& stage, Flow& flow, std::vector<Possible>& all) const;
   Next Meet(const Flow& flow, State& state, const Stage& stage, double until);
   Next Cross(State& state, const Stage& stage, double until, std::optional<size_t>& symbol);
   Next SplitAt(const State& state, size_t symbol);
