@@ -61,6 +61,7 @@ def pictures(rondo, folder):
     svg = folder / "tube.svg"
     done = run(rondo, "reach", "--svg", svg, EXAMPLES / "lotka_volterra.rondo")
     check(done.returncode == 0 and svg.exists(), "a picture of a proof")
+    check("proved and certified" in done.stdout, f"a touch is certified: {done.stdout}")
     xml.dom.minidom.parse(str(svg))
     text = svg.read_text()
     check("y over x" in text and "crossings" in text, "with the plane and every state")
