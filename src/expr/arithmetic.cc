@@ -88,16 +88,14 @@ TermId Arena::Add(std::vector<TermId> args) {
 TermId Arena::Zero(TermId t) {
   const TermId zero = Number(sort_of(t), Rational(0));
   if (!IsPartial(t)) return zero;
-  const auto defined = [&](TermId part) { return Complement(*this, Undefined(*this, part)); };
-  if (op(t) == Op::kIte && arg(t, 1) == zero && arg(t, 0) == defined(arg(t, 2)))
-    return t;  // it is one already
-  return Ite(defined(t), zero, t);
+  const bool already = op(t) == Op::kIte && arg(t, 1) == zero && arg(t, 0) == Defined(*this, arg(t, 2));
+  return already ? t : Ite(Defined(*this, t), zero, t);
 }
 
 // An atomic formula about a and b that holds wherever they have values, or nowhere.
 TermId Arena::IfDefined(TermId a, TermId b, bool holds) {
   if (!holds) return false_;
-  return And(Complement(*this, Undefined(*this, a)), Complement(*this, Undefined(*this, b)));
+  return And(Defined(*this, a), Defined(*this, b));
 }
 
 TermId Arena::Neg(TermId a) { return Mul(Number(sort_of(a), Rational(-1)), a); }

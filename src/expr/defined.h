@@ -12,4 +12,7 @@ TermId Undefined(Arena& arena, TermId term);
 /// negation `Arena::Not`; its complement is true. Without partial functions this is `Arena::Not`.
 TermId Complement(Arena& arena, TermId formula);
 
+/// True exactly where every part of the term or formula has a value.
+inline TermId Defined(Arena& arena, TermId term) { return Complement(arena, Undefined(arena, term)); }
+
 }  // namespace rondo::expr

@@ -195,12 +195,12 @@ bool Follower::TakeStep(Place& place, double wanted) {
   double taken = wanted;
   if (!Take(step, place.set, taken)) return false;
   Observation seen(*place.in, step);
-  std::vector<Possible> before = place.possible;
-  if (!IsQuiet(place, seen)) {
+  auto quiet = Quiet(place, seen);
+  if (!quiet) {
     if (!place.open && place.possible.size() == 1) return Fail("an event may happen");
-    place.possible = std::move(before);
     return Wander(place, wanted);
   }
+  place.possible = std::move(*quiet);
   for (size_t c = 0; c < place.falls.size(); ++c) {
     for (size_t k = 0; k < place.falls[c].size(); ++k) {
       if (place.falls[c][k]) place.falls[c][k] = seen.StaysBelow(place.in->claims[c].first + k);

@@ -58,7 +58,7 @@ class Follower {
   bool Split(const Place& place, size_t symbol);
   bool AtInstant(const Place& place, bool start);
 
-  bool IsQuiet(Place& place, Observation& seen) const;
+  static std::optional<std::vector<Possible>> Quiet(const Place& place, Observation& seen);
   bool Wander(Place& place, double wanted);
   bool Fork(const Place& place);
   std::optional<std::vector<Possible>> Reached(const ModeSystem& in, Observation& seen,

@@ -16,11 +16,12 @@ constexpr size_t kMostForks = 64;
 
 }  // namespace
 
-// Does no event happen during the step? Of what rises, only that is known afterwards which is known to go on
-// rising.
-bool Follower::IsQuiet(Place& place, Observation& seen) const {
+// What is possible after a step during which no event happens; nothing if one may. Of what rises, only that
+// is known afterwards which is known to go on rising.
+std::optional<std::vector<Follower::Possible>> Follower::Quiet(const Place& place, Observation& seen) {
   const ModeSystem& in = *place.in;
-  for (Possible& p : place.possible) {
+  std::vector<Possible> after;
+  for (const Possible& p : place.possible) {
     std::set<TermId> rising;
     for (const ModeGuard& guard : in.guards) {
       if (in.modes[guard.mode] != p.mode) continue;
@@ -29,12 +30,12 @@ bool Follower::IsQuiet(Place& place, Observation& seen) const {
       if (rises) {
         rising.insert(guard.formula.terms[0]);
       } else if (!seen.IsFalse(guard)) {
-        return false;
+        return std::nullopt;
       }
     }
-    p.rising = std::move(rising);
+    after.push_back({p.mode, std::move(rising)});
   }
-  return true;
+  return after;
 }
 
 // What is possible at some time of the step, if `before` is possible when it begins. Nothing if that is too
@@ -140,7 +141,7 @@ bool Follower::Wander(Place& place, double wanted) {
 // Each mode on its own, from here on.
 bool Follower::Fork(const Place& place) {
   bool first = true;
-  for (const Mode& mode : std::vector<Mode>(place.in->modes)) {
+  for (const Mode& mode : place.in->modes) {
     if (++forks_ > kMostForks) return Fail("too many modes are possible");
     if (!first) ++next_hint_;  // each begins with a record that says so
     first = false;

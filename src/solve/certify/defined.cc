@@ -1,6 +1,7 @@
 // Where partial functions are defined: a normal form must not say less of that than what is written.
 #include <algorithm>
 
+#include "expr/elementary.h"
 #include "expr/substitute.h"
 #include "solve/certify/normal.h"
 
@@ -9,16 +10,8 @@ namespace rondo::solve::certify {
 using expr::Elementary;
 using expr::Op;
 
-namespace {
-
-bool IsPartial(Elementary f) {
-  return f == Elementary::kSqrt || f == Elementary::kLog || f == Elementary::kAsin || f == Elementary::kAcos;
-}
-
-}  // namespace
-
 std::optional<Normal::Key> Normal::KeyOf(Elementary function, PolyId argument) {
-  if (!IsPartial(function)) return std::nullopt;
+  if (!expr::IsPartialFunction(function)) return std::nullopt;
   if (function != Elementary::kSqrt) return Key{function, argument};
   // Where a root is defined does not depend on the scale of its argument.
   Poly p = poly(argument);
@@ -61,7 +54,7 @@ bool Normal::HasPartial(TermId term) {
   std::unordered_set<TermId> seen;
   bool found = false;
   expr::VisitPostorder(arena_, term, seen, [&](TermId t) {
-    found = found || (arena_.op(t) == Op::kElementary && IsPartial(arena_.elementary_of(t)));
+    found = found || (arena_.op(t) == Op::kElementary && expr::IsPartialFunction(arena_.elementary_of(t)));
   });
   return found;
 }
@@ -78,7 +71,8 @@ bool Normal::Written(TermId term, std::set<Key>& keys, std::unordered_set<TermId
            FaithfulNumber(arena_.arg(term, 2));
   }
   // A value that is known exactly is defined.
-  if (op == Op::kElementary && IsPartial(arena_.elementary_of(term)) && !ConstantOf(poly(Number(term)))) {
+  if (op == Op::kElementary && expr::IsPartialFunction(arena_.elementary_of(term)) &&
+      !ConstantOf(poly(Number(term)))) {
     if (const auto key = KeyOf(arena_.elementary_of(term), Number(arena_.arg(term, 0)))) keys.insert(*key);
   }
   return std::ranges::all_of(arena_.args(term), [&](TermId a) { return Written(a, keys, seen); });
