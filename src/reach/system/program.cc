@@ -29,7 +29,9 @@ Interval Enclose(const Rational& value) {
 
 LinearPart NearestConstant(const Rational& value) {
   const Interval i = Enclose(value);
-  const double d = std::isfinite(i.lo) ? i.lo : i.hi;
+  // The end that is nearer to zero, so that -c and c are opposite: sums that are opposite terms are opposite
+  // numbers.
+  const double d = std::fabs(i.lo) < std::fabs(i.hi) ? i.lo : i.hi;
   return {d, i.IsPoint() ? 0 : std::nextafter(i.hi - i.lo, std::numeric_limits<double>::infinity()), 0};
 }
 
