@@ -79,7 +79,8 @@ bool IsMotionFile(const std::string& file) {
 }
 
 std::unique_ptr<Motion> LoadMotion(const std::vector<std::string>& files,
-                                   const std::vector<std::string>& options, Session& session) {
+                                   const std::vector<std::string>& options, Session& session,
+                                   const robot::Loose* loose) {
   auto motion = std::make_unique<Motion>();
   const size_t errors = session.diagnostics.errors();
   Reader reader(session, motion->module);
@@ -94,7 +95,7 @@ std::unique_ptr<Motion> LoadMotion(const std::vector<std::string>& files,
       choreography->options.push_back({option, choreography->name.span});
   }
   motion->declarations =
-      std::make_unique<choreo::Declarations>(motion->module, motion->arena, session.diagnostics);
+      std::make_unique<choreo::Declarations>(motion->module, motion->arena, session.diagnostics, loose);
   motion->graphs = choreo::Lower(motion->module, *motion->declarations);
   return motion;
 }

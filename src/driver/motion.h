@@ -23,9 +23,11 @@ bool IsMotionFile(const std::string& file);
 
 /// Reads files in order, and what they import, each once; builds the graphs. Nothing after a message when one
 /// cannot be read. What is wrong is in `session.diagnostics`.
-/// `options`: such as `equal_durations`, for every choreography.
+/// `options`: such as `equal_durations`, for every choreography. `loose`: a parameter of robots that may have
+/// any value between two bounds; outlives the result.
 std::unique_ptr<Motion> LoadMotion(const std::vector<std::string>& files,
-                                   const std::vector<std::string>& options, Session& session);
+                                   const std::vector<std::string>& options, Session& session,
+                                   const robot::Loose* loose = nullptr);
 
 /// Well-formedness, projections and processes of everything that was loaded. What the typing of processes
 /// leaves open; nothing if something is wrong.

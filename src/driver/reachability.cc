@@ -30,8 +30,7 @@ const reach::Problem& ProblemOf(const ContractResult& r) { return r.made.problem
 
 }  // namespace
 
-std::vector<ContractResult> ContractsOf(Motion& motion, const robot::Loose* loose,
-                                        std::vector<std::string>* left_out) {
+std::vector<ContractResult> ContractsOf(Motion& motion, std::vector<std::string>* left_out) {
   std::vector<ContractResult> all;
   const choreo::Graph* of = nullptr;
   const auto add = [&](const robot::World& world, const robot::Body& body,
@@ -69,14 +68,14 @@ std::vector<ContractResult> ContractsOf(Motion& motion, const robot::Loose* loos
     if (type == nullptr) continue;
     auto world = std::make_shared<robot::World>();
     for (const robot::MotionInstance& i :
-         robot::MotionsOf(*type, motion.declarations->evaluator(), *world, loose, left_out))
+         robot::MotionsOf(*type, motion.declarations->evaluator(), *world, left_out))
       add(*world, world->bodies[0], i);
   }
   return all;
 }
 
-std::vector<ContractResult> PortContractsOf(const LoadedKoord& koord, Platforms& platforms,
-                                            Session& session) {
+std::vector<ContractResult> PortContractsOf(const LoadedKoord& koord, Platforms& platforms, Session& session,
+                                            const robot::Loose* loose) {
   std::vector<ContractResult> all;
   for (const koord::PlatformDef* platform : koord.model.platforms) {
     const std::filesystem::path beside = session.sources.path(platform->span.file);
@@ -87,7 +86,7 @@ std::vector<ContractResult> PortContractsOf(const LoadedKoord& koord, Platforms&
           .Help("paths are relative to the specification");
       continue;
     }
-    auto motion = LoadMotion({file}, {}, session);
+    auto motion = LoadMotion({file}, {}, session, loose);
     if (motion == nullptr || motion->declarations == nullptr) continue;
     const robot::RobotDef* type = nullptr;
     std::vector<std::string> names;
@@ -108,7 +107,7 @@ std::vector<ContractResult> PortContractsOf(const LoadedKoord& koord, Platforms&
       continue;
     }
     for (koord::PortProblem& p : koord::PortProblems(koord.model, *platform, *world, world->bodies[0],
-                                                     motion->arena, session.diagnostics)) {
+                                                     motion->arena, session.diagnostics, loose)) {
       ContractResult result;
       result.span = p.assumption->span;
       result.made = std::move(p.made);
@@ -129,13 +128,13 @@ bool LoadContracts(const std::vector<std::string>& files, const std::string& spe
   if (files.size() == 1 && !IsMotionFile(files[0])) {
     loaded.koord = LoadKoord({files[0], spec}, session);
     if (loaded.koord == nullptr) return false;
-    loaded.results = PortContractsOf(*loaded.koord, loaded.platforms, session);
+    loaded.results = PortContractsOf(*loaded.koord, loaded.platforms, session, loose);
   } else {
-    loaded.motion = LoadMotion(files, {}, session);
+    loaded.motion = LoadMotion(files, {}, session, loose);
     if (loaded.motion == nullptr || loaded.motion->declarations == nullptr ||
         session.diagnostics.has_errors())
       return false;
-    loaded.results = ContractsOf(*loaded.motion, loose, &loaded.left_out);
+    loaded.results = ContractsOf(*loaded.motion, &loaded.left_out);
   }
   return !session.diagnostics.has_errors();
 }

@@ -33,10 +33,8 @@ struct ContractResult {
 
 /// The contracts of the motions that choreographies use; without any, of all robot types, as far as they have
 /// controllers or dynamics and their parameters have values or ranges.
-/// `loose`: a parameter of robot types that may have any value between two bounds. `left_out`: motions of
-/// robot types that cannot be looked at alone, and why.
-std::vector<ContractResult> ContractsOf(Motion& motion, const robot::Loose* loose = nullptr,
-                                        std::vector<std::string>* left_out = nullptr);
+/// `left_out`: motions of robot types that cannot be looked at alone, and why.
+std::vector<ContractResult> ContractsOf(Motion& motion, std::vector<std::string>* left_out = nullptr);
 
 /// The models that the platforms of a Koord program name, read from their files.
 struct Platforms {
@@ -45,7 +43,9 @@ struct Platforms {
 };
 
 /// The controller assumptions of the program whose modules have a platform.
-std::vector<ContractResult> PortContractsOf(const LoadedKoord& koord, Platforms& platforms, Session& session);
+/// `loose`: a parameter of the program or of the models that may have any value between two bounds.
+std::vector<ContractResult> PortContractsOf(const LoadedKoord& koord, Platforms& platforms, Session& session,
+                                            const robot::Loose* loose = nullptr);
 
 /// Files with contracts, and what they are about.
 struct LoadedContracts {

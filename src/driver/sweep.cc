@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <nlohmann/json.hpp>
 
 #include "driver/exit_status.h"
@@ -24,24 +25,53 @@ class Sweeper {
         cancelled_(cancelled),
         shortest_(shortest) {}
 
+  // Wide parts first, and what is hard last: what time is left for decides how sharp the boundary is, not how
+  // far one comes. Short parts of the range are better than many parts of everything else.
   void Run(interval::Interval range) {
-    SweepPart part{range.lo, range.hi, "unknown", 0, "", false};
-    const double middle = range.Middle();
-    const bool last = range.Width() <= shortest_ * 1.5 || middle <= range.lo || middle >= range.hi;
-    if (!stop_.StopRequested()) Decide(part, last);
-    const bool split = part.verdict != "proved" && !last && !stop_.StopRequested();
-    if (!split) {
-      Add(std::move(part));
-      return;
+    struct Task {
+      interval::Interval range;
+      size_t leaves;
+    };
+    std::deque<Task> open{{range, 1}};
+    for (; !open.empty(); open.pop_front()) {
+      const auto [next, leaves] = open.front();
+      SweepPart part{next.lo, next.hi, "unknown", 0, "", false};
+      if (!stop_.StopRequested()) Decide(part, leaves);
+      const double middle = next.Middle();
+      const bool shortest = next.Width() <= shortest_ * 1.5 || middle <= next.lo || middle >= next.hi;
+      if (part.verdict == "proved" || stop_.StopRequested() ||
+          (shortest && (part.verdict != "unknown" || leaves >= kMostLeaves))) {
+        parts_.push_back(std::move(part));
+      } else if (shortest) {
+        open.push_back({next, leaves == 1 ? kSomeLeaves : kMostLeaves});
+      } else {
+        open.push_back({{next.lo, middle}, 1});
+        open.push_back({{middle, next.hi}, 1});
+      }
     }
-    Run({range.lo, middle});
-    Run({middle, range.hi});
   }
 
-  std::vector<SweepPart> parts;
+  // Ascending, with what is alike as one.
+  std::vector<SweepPart> Parts() {
+    std::ranges::sort(parts_, {}, &SweepPart::from);
+    std::vector<SweepPart> merged;
+    for (SweepPart& part : parts_) {
+      const bool alike = !merged.empty() && merged.back().verdict == part.verdict &&
+                         merged.back().certified == part.certified;
+      if (alike) {
+        merged.back().to = part.to;
+      } else {
+        merged.push_back(std::move(part));
+      }
+    }
+    return merged;
+  }
 
  private:
-  void Decide(SweepPart& part, bool last) {
+  static constexpr size_t kSomeLeaves = 64;
+  static constexpr size_t kMostLeaves = 1024;
+
+  void Decide(SweepPart& part, size_t leaves) {
     reach::Problem problem = problem_;
     problem.initial[state_] = {part.from, part.to};
     for (size_t i = 0; i < problem.copy_of.size(); ++i) {
@@ -51,11 +81,10 @@ class Sweeper {
     prover.jobs = options_.jobs;
     prover.seed = options_.seed;
     prover.keep_tube = false;
-    // Short parts of the range are better than many parts of everything else.
-    prover.most_leaves = last ? 64 : 1;
-    prover.samples = 40;
+    prover.most_leaves = leaves;
+    if (leaves == 1) prover.samples = 40;
     const auto outcome = reach::Decide(problem, prover, stop_);
-    if (options_.progress) options_.progress(parts.size(), 1);
+    if (options_.progress) options_.progress(parts_.size(), 1);
     if (!outcome.ok()) return;
     if (const auto* proved = std::get_if<reach::Proved>(&outcome.value())) {
       part.verdict = "proved";
@@ -71,27 +100,20 @@ class Sweeper {
     }
   }
 
-  void Add(SweepPart part) {
-    if (!parts.empty() && parts.back().verdict == part.verdict && parts.back().certified == part.certified) {
-      parts.back().to = part.to;
-    } else {
-      parts.push_back(std::move(part));
-    }
-  }
-
   const reach::Problem& problem_;
   size_t state_;
   const DecideOptions& options_;
   const base::StopToken& stop_;
   const base::StopToken& cancelled_;  ///< without a limit of time
   double shortest_;
+  std::vector<SweepPart> parts_;
 };
 
 }  // namespace
 
 Sweep SweepContract(const ContractResult& contract, const std::string& parameter, size_t parts,
                     const DecideOptions& options, const base::StopToken& stop) {
-  Sweep sweep{contract.made.problem.name, parameter, contract.impossible, {}};
+  Sweep sweep{contract.made.problem.name, parameter, contract.impossible, false, {}};
   if (!sweep.trouble.empty()) return sweep;
   const auto& names = contract.made.names;
   const auto it = std::ranges::find(names, parameter);
@@ -106,7 +128,8 @@ Sweep SweepContract(const ContractResult& contract, const std::string& parameter
                         std::chrono::milliseconds(static_cast<int64_t>(options.timeout * 1000)));
   Sweeper sweeper(contract, state, options, limited, stop, range.Width() / static_cast<double>(parts));
   sweeper.Run(range);
-  sweep.parts = std::move(sweeper.parts);
+  sweep.parts = sweeper.Parts();
+  sweep.out_of_time = limited.StopRequested() && !stop.cancelled();
   return sweep;
 }
 
@@ -120,12 +143,14 @@ std::string ToText(const Sweep& sweep) {
       text += fmt::format(", for example {:.6g}: `{}`", part.counterexample, part.claim);
     text += '\n';
   }
+  if (sweep.out_of_time) text += "  out of time (--timeout)\n";
   return text;
 }
 
 nlohmann::json ToJson(const Sweep& sweep) {
   nlohmann::json out{{"contract", sweep.contract}, {"parameter", sweep.parameter}};
   if (!sweep.trouble.empty()) out["reason"] = sweep.trouble;
+  if (sweep.out_of_time) out["reason"] = "out of time (--timeout)";
   nlohmann::json list = nlohmann::json::array();
   for (const SweepPart& part : sweep.parts) {
     nlohmann::json one{{"from", part.from}, {"to", part.to}, {"verdict", part.verdict}};

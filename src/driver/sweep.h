@@ -21,6 +21,7 @@ struct SweepPart {
 struct Sweep {
   std::string contract, parameter;
   std::string trouble;           ///< why there is no answer, if there is none
+  bool out_of_time = false;      ///< more time would decide more
   std::vector<SweepPart> parts;  ///< ascending; neighbours differ in their verdict, or in being certified
 };
 

@@ -97,6 +97,24 @@ def sweeps(rondo, folder):
     check(2.76 < boundary < 2.76 + 3 * 7 / 64, f"the proved boundary is {boundary}")
     refuted = next(p["to"] for p in reversed(parts) if p["verdict"] == "refuted")
     check(refuted <= boundary and refuted > 2.4, f"refuted up to {refuted}")
+    # Behind a choreography: every robot that has the parameter.
+    team = folder / "team.rondo"
+    team.write_text("""import "ball.rondo"
+world W { a: Ball(damping = 5) b: Ball at (9 m, 0, 0) }
+choreography C in W {
+  initially a.x == -1 m and a.v == 0 and b.x == -1 m and b.v == 0
+  { a: Settle(), b: Settle() }
+}
+""")
+    done = run(rondo, "reach", "--json", "--sweep", "damping", "3..4", "--parts", "2", team)
+    swept = json.loads(done.stdout)["sweeps"]
+    check(done.returncode == 0 and [s["contract"] for s in swept] == ["a: Settle()", "b: Settle()"], f"{swept}")
+    # Behind a program: its own parameters, and those of the model. Of 0.4 degrees a minute, 0.4 a round.
+    hvac = ROOT / "examples" / "koord" / "hvac.koord"
+    done = run(rondo, "reach", "--json", "--sweep", "drift", "0..1", "--parts", "8", hvac)
+    for swept in json.loads(done.stdout)["sweeps"]:
+        proved = [p for p in swept["parts"] if p["verdict"] == "proved"]
+        check(done.returncode == 1 and proved[0]["from"] == 0.5 and proved[-1]["to"] == 1, f"{swept}")
     check(run(rondo, "reach", "--sweep", "nothing", "1..2", model).returncode == 1, "a parameter that is not there")
     check(run(rondo, "reach", "--sweep", "damping", "2..1", model).returncode == 1, "a range that is none")
     check(run(rondo, "reach", "--sweep", "damping", "1", model).returncode == 1, "no range")

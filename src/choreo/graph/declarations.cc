@@ -8,8 +8,9 @@ namespace rondo::choreo {
 
 using diag::Kind;
 
-Declarations::Declarations(const Module& module, expr::Arena& arena, diag::Diagnostics& diagnostics)
-    : diagnostics_(diagnostics), evaluator_(arena, module.exprs, diagnostics) {
+Declarations::Declarations(const Module& module, expr::Arena& arena, diag::Diagnostics& diagnostics,
+                           const robot::Loose* loose)
+    : diagnostics_(diagnostics), evaluator_(arena, module.exprs, diagnostics, loose) {
   for (const Item& item : module.items) {
     if (const auto* robot = std::get_if<RobotDef>(&item)) Add(robots_, robot->name, robot);
     if (const auto* world = std::get_if<WorldDef>(&item)) Add(worlds_, world->name, world);

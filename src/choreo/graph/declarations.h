@@ -18,7 +18,9 @@ class Declarations {
   using Table = std::map<std::string, const T*, std::less<>>;
 
   /// Reports names that are declared twice, and robot types that make no sense.
-  Declarations(const Module& module, expr::Arena& arena, diag::Diagnostics& diagnostics);
+  /// `loose`: a parameter of robots that has a range instead of a value; outlives it.
+  Declarations(const Module& module, expr::Arena& arena, diag::Diagnostics& diagnostics,
+               const robot::Loose* loose = nullptr);
 
   const ContractDef* FindContract(const Name& name);
   /// The world, built at the first call; nothing after a report.

@@ -18,13 +18,14 @@ namespace {
 class Builder {
  public:
   Builder(const Model& model, const PlatformDef& platform, const robot::World& world, const robot::Body& body,
-          expr::Arena& arena, diag::Diagnostics& diagnostics)
+          expr::Arena& arena, diag::Diagnostics& diagnostics, const robot::Loose* loose)
       : model_(model),
         platform_(platform),
         world_(world),
         body_(body),
         arena_(arena),
         diagnostics_(diagnostics),
+        loose_(loose),
         vocabulary_(arena, model, std::nullopt),
         executor_(vocabulary_, diagnostics) {}
 
@@ -58,7 +59,7 @@ class Builder {
     const Variable& variable = model_.variables[v];
     if (variable.kind == VariableKind::kParam) {
       const auto given = model_.exploration.values.find(v);
-      if (given == model_.exploration.values.end()) return;
+      if (given == model_.exploration.values.end() || IsLoose(variable)) return;
       settled.value[v] = end.value[v] = executor_.Value(given->second, variable.type, settled, robot);
       return;
     }
@@ -85,6 +86,8 @@ class Builder {
     settled.value[v] =
         arena_.Store(settled.value[v], robot, sensor ? expr::Substitute(arena_, term, Copies()) : term);
   }
+
+  bool IsLoose(const Variable& v) const { return loose_ != nullptr && loose_->name == v.name; }
 
   Substitution Copies() const { return {copies_.begin(), copies_.end()}; }
 
@@ -139,7 +142,7 @@ class Builder {
       });
       if (!actuator) continue;
       if (!v.least || !v.most) return fmt::format("the input `{}` has no bounds", v.name.text);
-      instance.unknowns.push_back({v.name.text, v.term, *v.least, *v.most, v.dimension});
+      instance.unknowns.push_back(v);
       if (arena_.IsNumber(*v.least) && arena_.IsNumber(*v.most)) {
         out.domain.push_back(fmt::format("{} in [{:.6g}, {:.6g}]", v.name.text,
                                          arena_.number(*v.least).ToDouble(),
@@ -149,9 +152,17 @@ class Builder {
     const auto terms = robot::VariablesOf(arena_, {instance.contract.pre, instance.contract.during});
     for (size_t v = 0; v < model_.variables.size(); ++v) {
       const Variable& variable = model_.variables[v];
-      const auto given = model_.exploration.values.find(v);
-      if (variable.kind != VariableKind::kParam || given == model_.exploration.values.end()) continue;
+      if (variable.kind != VariableKind::kParam) continue;
       const TermId value = settled.value[v];
+      if (terms.contains(value) && arena_.sort_of(value) == arena_.Real()) {
+        robot::Variable unknown{{variable.name, variable.span}, {}, value, {}, {}};
+        if (IsLoose(variable)) {
+          unknown.least = arena_.Number(arena_.Real(), loose_->least);
+          unknown.most = arena_.Number(arena_.Real(), loose_->most);
+        }
+        instance.unknowns.push_back(std::move(unknown));
+      }
+      if (!model_.exploration.values.contains(v) || IsLoose(variable)) continue;
       out.domain.push_back(arena_.IsNumber(value)
                                ? fmt::format("{} = {}", variable.name, arena_.number(value).ToString())
                                : fmt::format("{} as in `explore`", variable.name));
@@ -179,6 +190,7 @@ class Builder {
   const robot::Body& body_;
   expr::Arena& arena_;
   diag::Diagnostics& diagnostics_;
+  const robot::Loose* loose_;
   Vocabulary vocabulary_;
   Executor executor_;
   std::map<TermId, TermId> copies_;  ///< of states
@@ -190,8 +202,8 @@ class Builder {
 
 std::vector<PortProblem> PortProblems(const Model& model, const PlatformDef& platform,
                                       const robot::World& world, const robot::Body& body, expr::Arena& arena,
-                                      diag::Diagnostics& diagnostics) {
-  return Builder(model, platform, world, body, arena, diagnostics).Run();
+                                      diag::Diagnostics& diagnostics, const robot::Loose* loose) {
+  return Builder(model, platform, world, body, arena, diagnostics, loose).Run();
 }
 
 }  // namespace rondo::koord

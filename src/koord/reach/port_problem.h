@@ -24,12 +24,12 @@ struct PortProblem {
 /// may have given to actuators, every input and every t in [0, period]: Q, with old(...) at the start of the
 /// environment transition. States that no port shows must stay in their declared ranges, since the next round
 /// starts there. Parameters have the values that `explore` gives them; without, any that the general
-/// assumptions allow.
+/// assumptions allow, and so has the parameter `loose`, within its bounds.
 ///
 /// @param body  the robot of the platform, in `world`; its terms are in `arena`.
 /// @source Koord, Section 4.2 (AAsm), with the hidden state made explicit.
 std::vector<PortProblem> PortProblems(const Model& model, const PlatformDef& platform,
                                       const robot::World& world, const robot::Body& body, expr::Arena& arena,
-                                      diag::Diagnostics& diagnostics);
+                                      diag::Diagnostics& diagnostics, const robot::Loose* loose = nullptr);
 
 }  // namespace rondo::koord

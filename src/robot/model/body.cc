@@ -88,8 +88,19 @@ class Filler {
           value = Quantity(value.terms[0], *d);
         }
       }
+      if (e_.loose() != nullptr && e_.loose()->name == p.name.text && value.kind == ValueKind::kQuantity)
+        value = Unknown(p.name, value.dimension, *e_.loose());
       Claim(p.name, std::move(value));
     }
+  }
+
+  // A parameter that has a range instead of a value.
+  Value Unknown(const Name& name, Dimension dimension, const Loose& range) {
+    const TermId term =
+        arena_.Variable(arena_.Declare(fmt::format("{}.{}", body_.name.text, name.text), {}, arena_.Real()));
+    body_.unknowns.push_back({name, dimension, term, arena_.Number(arena_.Real(), range.least),
+                              arena_.Number(arena_.Real(), range.most)});
+    return Quantity(term, dimension);
   }
 
   void Variables(const StateGroup& group) {

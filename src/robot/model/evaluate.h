@@ -18,13 +18,21 @@ struct Scope {
   const Value* Find(std::string_view name) const;
 };
 
+/// A parameter of robots that may have any value between two bounds instead of its own.
+struct Loose {
+  std::string name;
+  expr::Rational least, most;  ///< in SI units
+};
+
 /// Gives expressions their meaning as terms, and checks dimensions: lengths, times and angles do not mix. A
 /// bare 0 fits to everything. Every mismatch is reported where it stands (`robot-unit`, `robot-type`); names
 /// that are not in scope as `choreo-undeclared`. The result of what was reported is kError.
 class Evaluator {
  public:
-  Evaluator(Arena& arena, const lang::ExprPool& pool, diag::Diagnostics& diagnostics)
-      : arena_(arena), pool_(pool), diagnostics_(diagnostics) {}
+  /// `loose`: outlives it, if there is one.
+  Evaluator(Arena& arena, const lang::ExprPool& pool, diag::Diagnostics& diagnostics,
+            const Loose* loose = nullptr)
+      : arena_(arena), pool_(pool), diagnostics_(diagnostics), loose_(loose) {}
 
   Value Evaluate(ExprId expr, const Scope& scope);
   /// Of a formula; true if it is missing or was reported.
@@ -39,6 +47,7 @@ class Evaluator {
   Arena& arena() { return arena_; }
   const lang::ExprPool& pool() const { return pool_; }
   diag::Diagnostics& diagnostics() { return diagnostics_; }
+  const Loose* loose() const { return loose_; }
   diag::Span SpanOf(ExprId expr) const { return pool_[expr].span; }
 
   /// Do two values measure the same? If one fits to everything, it takes the dimension of the other.
@@ -67,6 +76,7 @@ class Evaluator {
   Arena& arena_;
   const lang::ExprPool& pool_;
   diag::Diagnostics& diagnostics_;
+  const Loose* loose_;
 };
 
 }  // namespace rondo::robot

@@ -42,6 +42,7 @@ struct Body {
   std::vector<Variable> states;
   std::vector<Variable> inputs;                     ///< those that nothing in the world determines
   std::vector<Variable> memory;                     ///< of the controller
+  std::vector<Variable> unknowns;                   ///< parameters that have a range instead of a value
   std::vector<std::optional<TermId>> derivatives;   ///< of the states, if its dynamics are known
   std::map<std::string, Value, std::less<>> ports;  ///< for programs
   std::optional<Control> control;                   ///< for motions without one of their own

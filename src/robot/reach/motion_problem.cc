@@ -164,8 +164,9 @@ class Builder {
     if (UsesClock())
       Add("clock", world_.clock, arena_.Number(arena_.Real(), Rational(1)), nullptr,
           lang::Dimension{.time = 1});
-    for (const MotionInstance::Unknown& u : motion_.unknowns)
-      Add(u.name, u.term, Zero(), nullptr, u.dimension);
+    for (const auto* list : {&motion_.unknowns, &body_.unknowns}) {
+      for (const Variable& u : *list) Add(u.name.text, u.term, Zero(), &u, u.dimension);
+    }
     for (const auto& [copy, state] : motion_.copies) {
       const auto of = std::ranges::find(body_.states, state, &Variable::term);
       Add(arena_.symbol(arena_.symbol_of(copy)).name, copy, Zero(), nullptr,
@@ -203,7 +204,7 @@ class Builder {
     terms.insert(terms.end(), about.begin(), about.end());
     std::unordered_map<TermId, const Variable*> known;
     for (const Body& other : world_.bodies) {
-      for (const auto* list : {&other.states, &other.inputs}) {
+      for (const auto* list : {&other.states, &other.inputs, &other.unknowns}) {
         for (const Variable& v : *list) known.emplace(v.term, &v);
       }
     }
@@ -252,12 +253,6 @@ class Builder {
     std::vector<TermId> conditions{motion_.contract.pre};
     for (size_t i = 0; i < p.states.size(); ++i) {
       const Variable* v = ranges_[i];
-      const auto unknown = std::ranges::find(motion_.unknowns, p.states[i], &MotionInstance::Unknown::term);
-      if (unknown != motion_.unknowns.end()) {
-        conditions.push_back(arena_.Le(unknown->least, p.states[i]));
-        conditions.push_back(arena_.Le(p.states[i], unknown->most));
-        continue;
-      }
       const auto copy = std::ranges::find(motion_.copies, p.states[i], [](const auto& c) { return c.first; });
       if (copy != motion_.copies.end()) {
         p.copy_of.resize(p.states.size());
@@ -414,27 +409,13 @@ base::Result<MotionProblem> ProblemOf(const World& world, const Body& body, cons
   return Builder(world, body, instance, arena).Run();
 }
 
-bool StandAlone(const RobotDef& type, Evaluator& e, World& world, const Loose* loose,
-                std::optional<TermId>* variable) {
+bool StandAlone(const RobotDef& type, Evaluator& e, World& world) {
   Arena& arena = e.arena();
-  bool has = false;
   for (const RobotItem& item : type.items) {
     const auto* group = std::get_if<ParamGroup>(&item);
     if (group == nullptr) continue;
     for (const Param& p : group->params) {
       if (!p.value.valid()) return false;
-      has = has || (loose != nullptr && p.name.text == loose->name);
-    }
-  }
-  Arguments given;
-  if (has) {
-    // Its own value says what it measures.
-    World other;
-    StandAlone(type, e, other);
-    const Value own = other.bodies[0].scope.names.at(loose->name);
-    if (own.kind == ValueKind::kQuantity) {
-      *variable = arena.Variable(arena.Declare(type.name.text + "." + loose->name, {}, arena.Real()));
-      given.emplace(loose->name, std::pair(Quantity(**variable, own.dimension), type.name.span));
     }
   }
   world.scope.names.emplace("world", FrameAt(Identity(arena)));
@@ -444,15 +425,14 @@ bool StandAlone(const RobotDef& type, Evaluator& e, World& world, const Loose* l
   body.name = type.name;
   body.self = Identity(arena);
   body.scope.outer = &world.scope;
-  FillBody(type, given, world.clock, body, e);
+  FillBody(type, {}, world.clock, body, e);
   return true;
 }
 
-std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World& world, const Loose* loose,
+std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World& world,
                                       std::vector<std::string>* left_out) {
   std::vector<MotionInstance> all;
-  std::optional<TermId> parameter;
-  if (!StandAlone(type, e, world, loose, &parameter)) {
+  if (!StandAlone(type, e, world)) {
     if (left_out != nullptr)
       left_out->push_back(fmt::format("{} (a parameter of it has no value)", type.name.text));
     return all;
@@ -484,13 +464,9 @@ std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World&
       const auto least = e.Measure(p.least, body.scope, *d, "a bound");
       const auto most = e.Measure(p.most, body.scope, *d, "a bound");
       if (!least || !most) return all;
-      instance.unknowns.push_back({p.name.text, some, *least, *most, *d});
+      instance.unknowns.push_back({p.name, *d, some, *least, *most});
     }
     if (!known) continue;
-    if (parameter) {
-      instance.unknowns.push_back({loose->name, *parameter, arena.Number(arena.Real(), loose->least),
-                                   arena.Number(arena.Real(), loose->most)});
-    }
     const Scope scope = MotionScope(body, *motion, args, spans, e);
     instance.motion = motion;
     instance.text = motion->name.text;

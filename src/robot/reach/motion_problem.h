@@ -22,14 +22,8 @@ struct MotionInstance {
   expr::Rational least;                    ///< the shortest
   bool interruptible = false;
   bool known_duration = true;  ///< are these constants?
-  /// Parameters that may have any value between two bounds, the same one all the time.
-  struct Unknown {
-    std::string name;
-    TermId term;
-    TermId least, most;
-    lang::Dimension dimension = {};
-  };
-  std::vector<Unknown> unknowns;
+  /// Parameters that may have any value in their range, the same one all the time.
+  std::vector<Variable> unknowns;
   /// (variable, state): the variable is what the state was at the start.
   std::vector<std::pair<TermId, TermId>> copies;
   /// States that are allowed to leave their ranges: the ranges bound the start only.
@@ -62,22 +56,14 @@ base::Result<MotionProblem> ProblemOf(const World& world, const Body& body, cons
 std::optional<Value> QuantityOf(const std::string& text, const MotionProblem& problem, Arena& arena,
                                 diag::SourceSet& sources, diag::Diagnostics& diagnostics);
 
-/// A parameter of a robot type that may have any value between two bounds instead of its own.
-struct Loose {
-  std::string name;
-  expr::Rational least, most;  ///< in SI units
-};
-
 /// Makes `world` a world with one robot of this type at its origin. False if it has parameters without a
-/// value. Of the parameter `loose`, if it has it, the value is a variable, which is returned there.
-bool StandAlone(const RobotDef& type, Evaluator& evaluator, World& world, const Loose* loose = nullptr,
-                std::optional<TermId>* variable = nullptr);
+/// value.
+bool StandAlone(const RobotDef& type, Evaluator& evaluator, World& world);
 
 /// The motions of a robot type that can be looked at without a choreography: those whose parameters all have
 /// a value or a range. `world` becomes a world with one such robot, which the instances are about.
 /// `left_out`: the others, and why.
 std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& evaluator, World& world,
-                                      const Loose* loose = nullptr,
                                       std::vector<std::string>* left_out = nullptr);
 
 }  // namespace rondo::robot
