@@ -35,7 +35,7 @@ bool HasFormat(const nlohmann::json& json, const char* format) {
 
 base::Result<const ContractResult*> FindContract(const ContractName& name, Session& session,
                                                  LoadedContracts& loaded) {
-  if (!LoadContracts(name.files, name.spec, nullptr, session, loaded))
+  if (!LoadContracts(name.files, name.spec, nullptr, true, session, loaded))
     return base::Error{fmt::format("`{}` cannot be used", name.files[0])};
   const auto it = std::ranges::find(loaded.results, name.contract,
                                     [](const ContractResult& r) { return r.made.problem.name; });

@@ -89,7 +89,9 @@ class Run {
 
  private:
   bool Load() {
-    return LoadContracts(options_.files, options_.spec, loose_ ? &*loose_ : nullptr, session_, loaded_);
+    const bool reduce = options_.ranges.empty();  // else places are asked about
+    return LoadContracts(options_.files, options_.spec, loose_ ? &*loose_ : nullptr, reduce, session_,
+                         loaded_);
   }
 
   // NAME FROM..TO
@@ -210,15 +212,17 @@ class Run {
     };
     line.Show(fmt::format("[{}/{}] {}", index + 1, loaded_.results.size(), name));
     // The same motion elsewhere, or of another robot of the same type, is proved already.
-    reach::certify::Certificate certificate;
-    if (options_.ranges.empty()) r.same_as = reuse_.Covers(r, certificate);
+    TubeReuse::Cover cover;
+    if (options_.ranges.empty()) cover = reuse_.Covers(r);
+    r.same_as = cover.contract;
+    r.certified = cover.certified;
     if (r.same_as.empty()) DecideContract(r, options, stop_);
     if (r.outcome && std::holds_alternative<reach::Proved>(*r.outcome))
-      certificate = CertificateOf(std::get<reach::Proved>(*r.outcome));
-    if (VerdictOf(r) == "proved" && !options_.no_certify && !stop_.cancelled()) {
+      cover.certificate = CertificateOf(std::get<reach::Proved>(*r.outcome));
+    if (cover.certificate && !options_.no_certify && !stop_.cancelled()) {
       line.Show(fmt::format("[{}/{}] {}: certifying", index + 1, loaded_.results.size(), name));
-      CertifyContract(r, certificate, options_.jobs, stop_);
-      if (r.IsCertified() && !options_.certificates.empty()) SaveCertificate(index, certificate);
+      CertifyContract(r, *cover.certificate, options_.jobs, stop_);
+      if (r.IsCertified() && !options_.certificates.empty()) SaveCertificate(index, *cover.certificate);
     }
     if (!options_.ranges.empty()) {
       line.Show(fmt::format("[{}/{}] {}: ranges", index + 1, loaded_.results.size(), name));
@@ -227,7 +231,8 @@ class Run {
       wrong_range_ = wrong_range_ || (VerdictOf(r) == "proved" && !ranges_[index].trouble.empty());
     }
     StoreProved(r, cache_);
-    if (index + 1 < loaded_.results.size()) reuse_.Remember(r, std::move(certificate));
+    if (index + 1 < loaded_.results.size() && cover.certificate)
+      reuse_.Remember(r, std::move(*cover.certificate));
     Keep(index);
   }
 

@@ -10,6 +10,7 @@
 #include "driver/exit_status.h"
 #include "koord/reach/port_problem.h"
 #include "lang/suggest.h"
+#include "robot/reach/symmetry.h"
 
 namespace rondo::driver {
 
@@ -30,7 +31,8 @@ const reach::Problem& ProblemOf(const ContractResult& r) { return r.made.problem
 
 }  // namespace
 
-std::vector<ContractResult> ContractsOf(Motion& motion, std::vector<std::string>* left_out) {
+std::vector<ContractResult> ContractsOf(Motion& motion, bool reduce, std::string_view keep,
+                                        std::vector<std::string>* left_out) {
   std::vector<ContractResult> all;
   const choreo::Graph* of = nullptr;
   const auto add = [&](const robot::World& world, const robot::Body& body,
@@ -46,6 +48,13 @@ std::vector<ContractResult> ContractsOf(Motion& motion, std::vector<std::string>
     } else {
       result.impossible = problem.error().message;
     }
+    if (reduce && problem.ok()) {
+      if (auto reduced = robot::WithoutPlace(world, body, instance, motion.declarations->evaluator(), keep)) {
+        result.anywhere = std::move(reduced->parameters);
+        result.at_zero = std::move(reduced->anywhere);
+        if (reduced->made) result.made = std::move(*reduced->made);
+      }
+    }
     all.push_back(std::move(result));
   };
   for (const choreo::Graph& graph : motion.graphs) {
@@ -54,6 +63,7 @@ std::vector<ContractResult> ContractsOf(Motion& motion, std::vector<std::string>
       robot::MotionInstance instance;
       instance.text = i.text;
       instance.motion = i.motion;
+      instance.arguments = i.args;
       instance.contract = i.contract;
       instance.control = i.control;
       instance.duration = i.duration.most;
@@ -124,7 +134,7 @@ std::vector<ContractResult> PortContractsOf(const LoadedKoord& koord, Platforms&
 }
 
 bool LoadContracts(const std::vector<std::string>& files, const std::string& spec, const robot::Loose* loose,
-                   Session& session, LoadedContracts& loaded) {
+                   bool reduce, Session& session, LoadedContracts& loaded) {
   if (files.size() == 1 && !IsMotionFile(files[0])) {
     loaded.koord = LoadKoord({files[0], spec}, session);
     if (loaded.koord == nullptr) return false;
@@ -134,7 +144,8 @@ bool LoadContracts(const std::vector<std::string>& files, const std::string& spe
     if (loaded.motion == nullptr || loaded.motion->declarations == nullptr ||
         session.diagnostics.has_errors())
       return false;
-    loaded.results = ContractsOf(*loaded.motion, &loaded.left_out);
+    loaded.results =
+        ContractsOf(*loaded.motion, reduce, loose == nullptr ? "" : loose->name, &loaded.left_out);
   }
   return !session.diagnostics.has_errors();
 }
@@ -220,7 +231,9 @@ std::string ContractTable(const std::vector<ContractResult>& results) {
       if (const auto* proved = std::get_if<reach::Proved>(&*r.outcome))
         parts = fmt::format("{}", proved->leaves.size());
     }
-    const std::string note = r.same_as.empty() ? "" : fmt::format(" (as {})", r.same_as);
+    std::string note = r.same_as.empty() ? "" : fmt::format(" (as {})", r.same_as);
+    if (!r.anywhere.empty() && r.graph == nullptr && VerdictOf(r) == "proved")
+      note += fmt::format(" (whatever {})", fmt::join(r.anywhere, ", "));
     const std::string certified = r.IsCertified() ? fmt::format("{:.3f} s", r.certify_seconds)
                                   : r.certified   ? "no"
                                                   : "";
@@ -239,6 +252,7 @@ nlohmann::json ToJson(const ContractResult& r) {
   if (!r.domain.empty()) out["domain"] = r.domain;
   if (!r.model.empty()) out["model"] = r.model;
   if (!r.same_as.empty()) out["same_as"] = r.same_as;
+  if (!r.anywhere.empty()) out["whatever"] = r.anywhere;
   if (r.certified) {
     out["certified"] = r.certified->accepted;
     out["certify_seconds"] = r.certify_seconds;

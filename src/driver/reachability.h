@@ -24,17 +24,21 @@ struct ContractResult {
   double certify_seconds = 0;
 
   bool IsCertified() const { return certified && certified->accepted; }
-  std::vector<std::string> domain;       ///< what else a proof is limited to
-  const choreo::Graph* graph = nullptr;  ///< of a choreography's motion
-  std::string motion;                    ///< `Type.Motion`
-  std::string model;                     ///< of a port: by which robot type
-  std::string same_as;                   ///< the contract whose tube shows this one, too
+  std::vector<std::string> domain;        ///< what else a proof is limited to
+  const choreo::Graph* graph = nullptr;   ///< of a choreography's motion
+  std::string motion;                     ///< `Type.Motion`
+  std::string model;                      ///< of a port: by which robot type
+  std::string same_as;                    ///< the contract whose tube shows this one, too
+  std::vector<std::string> anywhere;      ///< parameters that may have any value: it is the same contract
+  std::optional<reach::Problem> at_zero;  ///< with zero for each of them: kept if and only if this one is
 };
 
 /// The contracts of the motions that choreographies use; without any, of all robot types, as far as they have
 /// controllers or dynamics and their parameters have values or ranges.
-/// `left_out`: motions of robot types that cannot be looked at alone, and why.
-std::vector<ContractResult> ContractsOf(Motion& motion, std::vector<std::string>* left_out = nullptr);
+/// `reduce`: use that places do not matter, where they do not, but keep the parameter `keep`. `left_out`:
+/// motions of robot types that cannot be looked at alone, and why.
+std::vector<ContractResult> ContractsOf(Motion& motion, bool reduce = true, std::string_view keep = "",
+                                        std::vector<std::string>* left_out = nullptr);
 
 /// The models that the platforms of a Koord program name, read from their files.
 struct Platforms {
@@ -57,8 +61,9 @@ struct LoadedContracts {
 };
 
 /// The contracts of robots and choreographies (`.rondo`), or of one Koord program. False after an error.
+/// `reduce`: as for ContractsOf; `loose` is kept.
 bool LoadContracts(const std::vector<std::string>& files, const std::string& spec, const robot::Loose* loose,
-                   Session& session, LoadedContracts& loaded);
+                   bool reduce, Session& session, LoadedContracts& loaded);
 
 /// Decides one contract, within so many seconds.
 struct DecideOptions {

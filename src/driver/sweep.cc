@@ -9,6 +9,7 @@
 
 #include "driver/exit_status.h"
 #include "driver/tube_certificate.h"
+#include "reach/system/bounds.h"
 
 namespace rondo::driver {
 
@@ -74,9 +75,7 @@ class Sweeper {
   void Decide(SweepPart& part, size_t leaves) {
     reach::Problem problem = problem_;
     problem.initial[state_] = {part.from, part.to};
-    for (size_t i = 0; i < problem.copy_of.size(); ++i) {
-      if (problem.copy_of[i] == state_) problem.initial[i] = problem.initial[state_];
-    }
+    Narrow(problem);
     reach::ProverOptions prover;
     prover.jobs = options_.jobs;
     prover.seed = options_.seed;
@@ -97,6 +96,22 @@ class Sweeper {
       part.verdict = "refuted";
       part.counterexample = refuted->course.start[state_];
       part.claim = problem.claims[refuted->violation.claim].name;
+    }
+  }
+
+  // What is assumed at the start may relate other states to this one.
+  static void Narrow(reach::Problem& problem) {
+    interval::Box box = problem.initial;
+    auto formula = reach::Normalise(*problem.arena, problem.assume);
+    if (formula.ok()) {
+      const auto terms = reach::Compile(*problem.arena, problem.states, formula.value().terms);
+      if (terms.ok()) reach::Contract(*problem.arena, terms.value(), formula.value(), box);
+    }
+    const bool empty =
+        std::ranges::any_of(box, [](const interval::Interval& side) { return side.IsEmpty(); });
+    if (!empty) problem.initial = std::move(box);
+    for (size_t i = 0; i < problem.copy_of.size(); ++i) {
+      if (problem.copy_of[i]) problem.initial[i] = problem.initial[*problem.copy_of[i]];
     }
   }
 

@@ -1,5 +1,7 @@
 #include "driver/tube_reuse.h"
 
+#include <algorithm>
+
 #include "reach/system/bounds.h"
 #include "reach/system/centred.h"
 #include "reach/system/text.h"
@@ -40,19 +42,19 @@ bool HoldsOn(const std::vector<reach::Leaf>& leaves, const reach::Problem& probl
 
 }  // namespace
 
-std::string TubeReuse::Covers(const ContractResult& contract,
-                              reach::certify::Certificate& certificate) const {
-  if (!contract.impossible.empty() || tubes_.empty()) return "";
+TubeReuse::Cover TubeReuse::Covers(const ContractResult& contract) const {
+  if (!contract.impossible.empty() || tubes_.empty()) return {};
   const reach::Problem problem = reach::Centred(contract.made.problem).problem;
-  const auto it = tubes_.find(TextWith(problem, {}));
-  if (it == tubes_.end()) return "";
-  for (const reach::Claim& claim : problem.claims) {
-    if (!it->second.claims.contains(TextWith(problem, {claim})) &&
-        !HoldsOn(it->second.leaves, problem, claim))
-      return "";
+  if (const auto it = tubes_.find(TextWith(problem, {})); it != tubes_.end()) {
+    const bool all = std::ranges::all_of(problem.claims, [&](const reach::Claim& claim) {
+      return it->second.claims.contains(TextWith(problem, {claim})) ||
+             HoldsOn(it->second.leaves, problem, claim);
+    });
+    if (all) return {it->second.contract, it->second.certificate, std::nullopt};
   }
-  certificate = it->second.certificate;
-  return it->second.contract;
+  if (!contract.at_zero) return {};
+  const auto it = anywhere_.find(reach::ToText(*contract.at_zero));
+  return it == anywhere_.end() ? Cover() : it->second;
 }
 
 void TubeReuse::Remember(const ContractResult& contract, reach::certify::Certificate certificate) {
@@ -71,6 +73,9 @@ void TubeReuse::Remember(const ContractResult& contract, reach::certify::Certifi
   for (const reach::Claim& claim : centred.problem.claims)
     tube.claims.insert(TextWith(centred.problem, {claim}));
   tubes_.emplace(TextWith(centred.problem, {}), std::move(tube));
+  if (contract.at_zero)
+    anywhere_.emplace(reach::ToText(*contract.at_zero),
+                      Cover{contract.made.problem.name, std::nullopt, contract.certified});
 }
 
 }  // namespace rondo::driver

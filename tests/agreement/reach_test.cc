@@ -167,6 +167,42 @@ std::vector<std::string> Files() {
 INSTANTIATE_TEST_SUITE_P(Files, Audit, testing::ValuesIn(Files()),
                          [](const auto& file) { return std::filesystem::path(file.param).stem().string(); });
 
+// Where a parameter does not matter, its contract is proved for one value of it: trajectories keep it for
+// others.
+TEST(Symmetry, OtherPlacesKeepTheContract) {
+  const auto loaded = Load("models/car.rondo");
+  const std::string name = "Car: FollowLine(x0, y0, heading)";
+  const auto find = [&](const std::vector<driver::ContractResult>& all) {
+    return *std::ranges::find(all, name, [](const auto& r) { return r.made.problem.name; });
+  };
+  const driver::ContractResult reduced = find(loaded->contracts);
+  EXPECT_EQ(reduced.anywhere, (std::vector<std::string>{"x0", "y0", "heading"}));
+  const auto outcome = reach::Decide(reduced.made.problem, {}, base::StopToken());
+  ASSERT_TRUE(outcome.ok() && std::holds_alternative<reach::Proved>(outcome.value()));
+  const driver::ContractResult whole = find(driver::ContractsOf(*loaded->motion, false));
+  auto trajectories = reach::Trajectories::Of(whole.made.problem);
+  ASSERT_TRUE(trajectories.ok());
+  auto run = std::move(trajectories).value();
+  std::mt19937_64 random(20261123);
+  size_t looked_at = 0;
+  while (looked_at < Wanted() / 10) {
+    reach::Course course;
+    course.start = Draw(whole.made.problem.initial, 65, random);
+    // Near its own line.
+    const auto at = [&](const char* state) -> double& {
+      return course
+          .start[static_cast<size_t>(std::ranges::find(whole.made.names, state) - whole.made.names.begin())];
+    };
+    at("x") = at("x0") + 0.1 * (static_cast<double>(random() >> 11) * 0x1p-52 - 1);
+    at("y") = at("y0") + 0.1 * (static_cast<double>(random() >> 11) * 0x1p-52 - 1);
+    at("theta") = at("heading") + 0.087 * (static_cast<double>(random() >> 11) * 0x1p-52 - 1);
+    if (run.MissAssumed(course.start) > 0) continue;
+    ++looked_at;
+    const reach::Violation worst = run.Worst(course, 0.05, 0, 1e-10, base::StopToken());
+    ASSERT_LE(worst.miss, 0) << "heading " << at("heading");
+  }
+}
+
 // Much sharper than boxes: at each step the polynomials say where the trajectory with these symbols is, up to
 // an error.
 TEST(Polynomials, FollowEachTrajectory) {

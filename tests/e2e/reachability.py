@@ -138,11 +138,31 @@ def ranges(rondo, folder):
         check(run(rondo, "reach", "--no-cache", *wrong, model).returncode == 1, f"{wrong} is refused")
 
 
-def reuse(rondo):
+def reuse(rondo, folder):
     done = run(rondo, "reach", "--json", "--no-cache", ROOT / "examples" / "choreo" / "driven.rondo")
     contracts = json.loads(done.stdout)["contracts"]
     check(done.returncode == 0 and sum("same_as" in c for c in contracts) == 2, f"two of four tubes serve: {done.stdout}")
     check(all(c["certified"] for c in contracts), f"all are certified: {done.stdout}")
+    # Which way it goes does not matter, unless something has a direction.
+    model = (ROOT / "models" / "car.rondo").read_text()
+    (folder / "car.rondo").write_text(model)
+    (folder / "windy.rondo").write_text(model.replace("x' = speed * cos(theta)", "x' = speed * cos(theta) + 1 cm / 1 s"))
+    for name, proofs in ("car", 1), ("windy", 2):
+        team = folder / f"{name}_team.rondo"
+        team.write_text(f"""import "{name}.rondo"
+world W {{ a: Car b: Car at (9 m, 0, 0) }}
+choreography C in W {{
+  initially a.x == 0 and a.y == 0 and a.theta == 0 and b.x == 0 and b.y == 0 and b.theta == 50 deg
+  {{ a: FollowLine(0, 0, 0), b: FollowLine(0, 0, 50 deg) }}
+}}
+""")
+        done = run(rondo, "reach", "--json", "--no-cache", "--timeout", "280", team)
+        contracts = json.loads(done.stdout)["contracts"]
+        check(done.returncode == 0 and all(c["certified"] for c in contracts), f"{name}: {done.stdout}")
+        check(sum("same_as" not in c for c in contracts) == proofs, f"{name}: {contracts}")
+    done = run(rondo, "reach", "--json", "--no-cache", "--contract", "FollowLine", folder / "car.rondo")
+    one = json.loads(done.stdout)["contracts"][0]
+    check(one["verdict"] == "proved" and one["whatever"] == ["x0", "y0", "heading"], f"{one}")
 
 
 def certificates(rondo, folder):
@@ -248,7 +268,7 @@ def main():
         pictures(rondo, folder)
         sweeps(rondo, folder)
         ranges(rondo, folder)
-        reuse(rondo)
+        reuse(rondo, folder)
         certificates(rondo, folder)
         samples(rondo, folder)
     print(f"{checks[0]} checks passed, {checks[1]} failed")

@@ -22,14 +22,6 @@ std::optional<Rational> Constant(const Arena& arena, std::optional<TermId> term)
   return arena.number(*term);
 }
 
-// Encloses a term without variables: bounds in degrees are no rational numbers.
-std::optional<Interval> ConstantRange(const Arena& arena, std::optional<TermId> term) {
-  if (!term) return std::nullopt;
-  auto program = reach::Compile(arena, {}, {*term});
-  if (!program.ok()) return std::nullopt;
-  return reach::ValuesOn(program.value(), {})[program.value().outputs[0]];
-}
-
 class Builder {
  public:
   Builder(const World& world, const Body& body, const MotionInstance& instance, Arena& arena)
@@ -373,9 +365,9 @@ class Builder {
           std::ranges::find(motion_.visible, v.term) != motion_.visible.end())
         continue;
       const std::vector<TermId> range = Range(v);
-      if (!range.empty())
-        p.claims.push_back(
-            {fmt::format("{} in its range", v.name.text), arena_.And(range), start, p.horizon});
+      if (range.empty()) continue;
+      out_.in_range.push_back(p.claims.size());
+      p.claims.push_back({fmt::format("{} in its range", v.name.text), arena_.And(range), start, p.horizon});
     }
     // What a controller sets stays in its range, too.
     for (const Variable& v : body_.inputs) {
@@ -404,9 +396,44 @@ class Builder {
 
 }  // namespace
 
+std::optional<Interval> ConstantRange(const Arena& arena, std::optional<TermId> term) {
+  if (!term) return std::nullopt;
+  auto program = reach::Compile(arena, {}, {*term});
+  if (!program.ok()) return std::nullopt;
+  return reach::ValuesOn(program.value(), {})[program.value().outputs[0]];
+}
+
 base::Result<MotionProblem> ProblemOf(const World& world, const Body& body, const MotionInstance& instance,
                                       Arena& arena) {
   return Builder(world, body, instance, arena).Run();
+}
+
+MotionInstance InstanceOf(const Body& body, const MotionDef& motion, const std::vector<Value>& args,
+                          const std::vector<diag::Span>& spans, Evaluator& e) {
+  const Arena& arena = e.arena();
+  MotionInstance instance;
+  const Scope scope = MotionScope(body, motion, args, spans, e);
+  instance.motion = &motion;
+  std::string list;
+  for (const Param& p : motion.params) {
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", p.name.text);
+    instance.arguments.push_back(scope.names.at(p.name.text));
+  }
+  instance.text = fmt::format("{}({})", motion.name.text, list);
+  instance.contract = ContractOf(body, motion, scope, e);
+  instance.control = ControlOf(body, motion, scope, e);
+  instance.interruptible = motion.interruptible;
+  const Value least = e.Evaluate(motion.least, scope);
+  instance.known_duration = least.kind == ValueKind::kQuantity && arena.IsNumber(least.terms[0]);
+  if (instance.known_duration) instance.least = arena.number(least.terms[0]);
+  const lang::Expr& end = e.pool()[motion.most];
+  if (end.kind != lang::ExprKind::kName || end.text != "inf") {
+    const Value most = e.Evaluate(motion.most, scope);
+    if (most.kind == ValueKind::kQuantity && arena.IsNumber(most.terms[0]))
+      instance.duration = arena.number(most.terms[0]);
+    instance.known_duration = instance.known_duration && instance.duration.has_value();
+  }
+  return instance;
 }
 
 bool StandAlone(const RobotDef& type, Evaluator& e, World& world) {
@@ -442,7 +469,7 @@ std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World&
   for (const RobotItem& item : type.items) {
     const auto* motion = std::get_if<MotionDef>(&item);
     if (motion == nullptr) continue;
-    MotionInstance instance;
+    std::vector<Variable> unknowns;
     std::vector<Value> args(motion->params.size());
     std::vector<diag::Span> spans;
     bool known = true;
@@ -464,29 +491,11 @@ std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World&
       const auto least = e.Measure(p.least, body.scope, *d, "a bound");
       const auto most = e.Measure(p.most, body.scope, *d, "a bound");
       if (!least || !most) return all;
-      instance.unknowns.push_back({p.name, *d, some, *least, *most});
+      unknowns.push_back({p.name, *d, some, *least, *most});
     }
     if (!known) continue;
-    const Scope scope = MotionScope(body, *motion, args, spans, e);
-    instance.motion = motion;
-    instance.text = motion->name.text;
-    std::string list;
-    for (const Param& p : motion->params) list += fmt::format("{}{}", list.empty() ? "" : ", ", p.name.text);
-    instance.text += fmt::format("({})", list);
-    instance.contract = ContractOf(body, *motion, scope, e);
-    instance.control = ControlOf(body, *motion, scope, e);
-    instance.interruptible = motion->interruptible;
-    const Value least = e.Evaluate(motion->least, scope);
-    instance.known_duration = least.kind == ValueKind::kQuantity && arena.IsNumber(least.terms[0]);
-    if (instance.known_duration) instance.least = arena.number(least.terms[0]);
-    const lang::Expr& end = e.pool()[motion->most];
-    if (end.kind != lang::ExprKind::kName || end.text != "inf") {
-      const Value most = e.Evaluate(motion->most, scope);
-      if (most.kind == ValueKind::kQuantity && arena.IsNumber(most.terms[0]))
-        instance.duration = arena.number(most.terms[0]);
-      instance.known_duration = instance.known_duration && instance.duration.has_value();
-    }
-    all.push_back(std::move(instance));
+    all.push_back(InstanceOf(body, *motion, args, spans, e));
+    all.back().unknowns = std::move(unknowns);
   }
   return all;
 }

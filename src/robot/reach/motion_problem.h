@@ -16,6 +16,7 @@ namespace rondo::robot {
 struct MotionInstance {
   std::string text;  ///< as it is called: `Move(1 m)`
   const MotionDef* motion = nullptr;
+  std::vector<Value> arguments;  ///< by parameter
   Contract contract;
   std::optional<Control> control;
   std::optional<expr::Rational> duration;  ///< the longest it may take, seconds; nothing: for ever
@@ -36,6 +37,7 @@ struct MotionProblem {
   size_t robot_states = 0;           ///< the first ones: the robot's own, without memory, clock and the like
   std::vector<std::string> names;    ///< by state
   Scope scope;                       ///< the states and the robot's inputs: what one may ask about
+  std::vector<size_t> in_range;      ///< the claims that one of these states stays in its range
   std::vector<std::string> assumed;  ///< what a proof of it rests on, for people
 };
 
@@ -51,10 +53,17 @@ struct MotionProblem {
 base::Result<MotionProblem> ProblemOf(const World& world, const Body& body, const MotionInstance& instance,
                                       Arena& arena);
 
+/// Encloses a term without variables: bounds in degrees are no rational numbers.
+std::optional<interval::Interval> ConstantRange(const Arena& arena, std::optional<TermId> term);
+
 /// Reads a quantity that is computed from what `problem` is about, in the language of models: `abs(x - y) + 2
 /// cm`. nullopt if it is none; why is reported, and stands in `text`.
 std::optional<Value> QuantityOf(const std::string& text, const MotionProblem& problem, Arena& arena,
                                 diag::SourceSet& sources, diag::Diagnostics& diagnostics);
+
+/// The motion with these arguments (of kind kError: the default).
+MotionInstance InstanceOf(const Body& body, const MotionDef& motion, const std::vector<Value>& args,
+                          const std::vector<diag::Span>& spans, Evaluator& evaluator);
 
 /// Makes `world` a world with one robot of this type at its origin. False if it has parameters without a
 /// value.

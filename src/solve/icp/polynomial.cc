@@ -5,8 +5,11 @@
 
 namespace rondo::solve::icp {
 
+using expr::AddTo;
 using expr::Arena;
+using expr::Monomial;
 using expr::Op;
+using expr::Polynomial;
 using expr::Rational;
 using expr::TermId;
 
@@ -14,45 +17,11 @@ namespace {
 
 constexpr size_t kMostMonomials = 200;
 
-void AddTo(Polynomial& p, const Monomial& m, const Rational& c) {
-  const auto [it, fresh] = p.emplace(m, c);
-  if (!fresh) it->second = it->second + c;
-  if (it->second.IsZero()) p.erase(it);
-}
-
-std::optional<Polynomial> Times(const Polynomial& a, const Polynomial& b, size_t limit) {
-  Polynomial result;
-  for (const auto& [m, c] : a) {
-    for (const auto& [n, d] : b) {
-      Monomial product;
-      std::merge(m.begin(), m.end(), n.begin(), n.end(), std::back_inserter(product));
-      AddTo(result, product, c * d);
-      if (result.size() > limit) return std::nullopt;
-    }
-  }
-  return result;
-}
-
 size_t Degree(const Polynomial& p) {
   size_t degree = 0;
   for (const auto& [m, c] : p) degree = std::max(degree, m.size());
   return degree;
 }
-
-}  // namespace
-
-TermId ToTerm(Arena& arena, const Polynomial& p) {
-  std::vector<TermId> parts{arena.Number(arena.Real(), Rational(0))};
-  for (const auto& [m, c] : p) {
-    TermId product = arena.Number(arena.Real(), c);
-    TermId atoms;
-    for (const TermId a : m) atoms = atoms.valid() ? arena.Mul(atoms, a) : a;
-    parts.push_back(atoms.valid() ? arena.Mul(product, atoms) : product);
-  }
-  return arena.Add(std::move(parts));
-}
-
-namespace {
 
 // a x^2 + x l + rest = a (x + l / 2a)^2 - l^2 / 4a + rest, one atom after the other.
 TermId CompleteSquares(Arena& arena, Polynomial p) {
@@ -70,7 +39,7 @@ TermId CompleteSquares(Arena& arena, Polynomial p) {
       if (m.size() == 2 && m[0] != m[1] && (m[0] == x || m[1] == x))
         AddTo(line, {m[0] == x ? m[1] : m[0]}, c / (a + a));
     }
-    const auto square = Times(line, line, kMostMonomials);
+    const auto square = expr::Product(line, line, kMostMonomials);
     if (!square) return {};
     for (const auto& [m, c] : *square) AddTo(p, m, Rational(0) - a * c);
     const TermId root = ToTerm(arena, line);
@@ -170,32 +139,6 @@ std::pair<Rational, TermId> Monic(Arena& arena, TermId term) {
   if (arena.op(first) == Op::kMul && arena.IsNumber(arena.arg(first, 0)))
     lead = arena.number(arena.arg(first, 0));
   return {lead, arena.Mul(arena.Number(arena.Real(), Rational(1) / lead), term)};
-}
-
-std::optional<Polynomial> Expand(const Arena& arena, TermId term, size_t limit) {
-  Polynomial result;
-  switch (arena.op(term)) {
-    case Op::kNumber:
-      AddTo(result, {}, arena.number(term));
-      return result;
-    case Op::kAdd:
-      for (const TermId a : arena.args(term)) {
-        const auto part = Expand(arena, a, limit);
-        if (!part) return std::nullopt;
-        for (const auto& [m, c] : *part) AddTo(result, m, c);
-        if (result.size() > limit) return std::nullopt;
-      }
-      return result;
-    case Op::kMul: {
-      const auto a = Expand(arena, arena.arg(term, 0), limit);
-      if (!a) return std::nullopt;
-      const auto b = Expand(arena, arena.arg(term, 1), limit);
-      return b ? Times(*a, *b, limit) : std::nullopt;
-    }
-    default:
-      AddTo(result, {term}, Rational(1));
-      return result;
-  }
 }
 
 TermId Condense(Arena& arena, TermId term) {

@@ -1,21 +1,10 @@
 #pragma once
 
-#include <map>
-#include <optional>
-#include <vector>
+#include <utility>
 
-#include "expr/arena.h"
+#include "expr/polynomial.h"
 
 namespace rondo::solve::icp {
-
-/// A product of atoms (terms that are no sums and no products), sorted; empty: 1.
-using Monomial = std::vector<expr::TermId>;
-using Polynomial = std::map<Monomial, expr::Rational>;
-
-/// `term` multiplied out; nullopt if that has more than `limit` monomials.
-std::optional<Polynomial> Expand(const expr::Arena& arena, expr::TermId term, size_t limit);
-
-expr::TermId ToTerm(expr::Arena& arena, const Polynomial& polynomial);
 
 /// A number and a term that together make `term`; if that is a sum, the first coefficient of the other is 1.
 std::pair<expr::Rational, expr::TermId> Monic(expr::Arena& arena, expr::TermId term);

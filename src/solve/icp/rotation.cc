@@ -10,7 +10,9 @@
 namespace rondo::solve::icp {
 
 using expr::Elementary;
+using expr::Monomial;
 using expr::Op;
+using expr::Polynomial;
 
 namespace {
 

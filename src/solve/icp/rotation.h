@@ -38,7 +38,7 @@ class Rotations {
   using TermId = expr::TermId;
   using Complex = std::pair<Rational, Rational>;
   /// A + i B, by monomial.
-  using Vector = std::map<Monomial, Complex>;
+  using Vector = std::map<expr::Monomial, Complex>;
 
   struct Frame {
     Vector vector;
@@ -55,7 +55,7 @@ class Rotations {
 
   bool IsTotal(TermId term) const;
   TermId RewriteSum(TermId sum);
-  TermId RewriteAngle(const Polynomial& polynomial, TermId angle);
+  TermId RewriteAngle(const expr::Polynomial& polynomial, TermId angle);
   Frame& FrameOf(TermId angle, const Vector& vector, Complex& ratio);
   TermId Square(TermId term);
   Norm NormOf(TermId a, TermId b);
