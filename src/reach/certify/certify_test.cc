@@ -321,6 +321,15 @@ TEST_F(Problems, WithAnEventNeedItsTime) {
   Always(p, arena_.Le(Num(-0.2), x));
   EXPECT_FALSE(checked());
   Always(p, arena_.Le(x, Num(1.001)));
+  // Of half of the tank, the record is about half of its symbol.
+  const Certificate whole{{record}};
+  Problem half = p;
+  half.initial[0] = {0, 0.25};
+  PartRecord own = record;
+  own.path = {};
+  EXPECT_FALSE(Checked(half, {{own}}).accepted);  // that is about its own symbol
+  own.steps[1].time = {{{0}, 0.625}, {{1}, -0.125}};
+  EXPECT_TRUE(Checked(half, {{own}}).accepted);
   record.steps[1].time[0].second = 0.75;  // too late
   EXPECT_FALSE(checked());
   record.steps[1].time[0].second = 0.5;
@@ -334,6 +343,52 @@ TEST_F(Problems, WithAnEventNeedItsTime) {
   EXPECT_FALSE(checked());
   record.steps.erase(record.steps.begin() + 1);  // none at all
   EXPECT_FALSE(checked());
+}
+
+// Of several comparisons, all but one must be decided. What leads back at once leads nowhere.
+TEST_F(Problems, WithAnEventMayHaveSeveralConditions) {
+  const TermId x = Var("x"), y = Var("y"), tap = Var("tap");
+  const TermId shut = arena_.Eq(tap, Num(1));
+  Problem p =
+      Make({x, y, tap}, {arena_.Ite(shut, Num(-0.5), Num(1)), Num(1), Num(0)}, {{0, 0.5}, {0, 0}, {0, 0}}, 3);
+  p.pinned = {std::nullopt, Rational(0), Rational(0)};
+  const auto when = [&](TermId condition, double to) {
+    p.events.push_back({condition, {std::nullopt, std::nullopt, Num(to)}});
+  };
+  const TermId open = arena_.Eq(tap, Num(0));
+  const TermId full = arena_.Le(Num(1), x);
+  PartRecord record;
+  PartRecord::Step cross{.length = 0.875, .degree = 1, .kind = PartRecord::Step::Kind::kCross};
+  cross.together = 0.25;
+  cross.time = {{{0}, 0.5}, {{1}, -0.25}};
+  record.steps = {{.length = 0.25, .degree = 1}, cross, {.length = 0.25, .degree = 1}};
+  const auto checked = [&](TermId condition, TermId back, TermId claim) {
+    p.events.clear();
+    when(arena_.And({open, condition}), 1);
+    if (back.valid()) when(arena_.And({shut, back}), 0);
+    Always(p, claim);
+    return Checked(p, {{record}}).accepted;
+  };
+  const TermId below = arena_.Le(x, Num(1.001));
+  const TermId none;
+  EXPECT_TRUE(checked(full, none, below));
+  EXPECT_TRUE(checked(arena_.And({full, arena_.Le(y, Num(2))}), none, below));
+  EXPECT_TRUE(checked(arena_.Or(full, arena_.Le(Num(2), y)), none, below));
+  EXPECT_FALSE(checked(arena_.And({full, arena_.Le(y, Num(0.7))}), none, below));  // not by all of them
+  EXPECT_FALSE(checked(arena_.And({full, arena_.Le(Num(0.7), y)}), none, below));
+  EXPECT_FALSE(checked(arena_.Or(full, arena_.Le(Num(0.7), y)), none, arena_.Le(Num(-1), y)));
+  EXPECT_FALSE(checked(arena_.Or(full, arena_.Le(Num(2), y)), none, arena_.Le(x, Num(0.999))));
+  const TermId early = arena_.Le(arena_.Add(x, y), Num(10));
+  EXPECT_FALSE(checked(full, early, below));
+  // x falls when the tap is shut, so that it opens again at once, and so on: the time is as unknown as
+  // before.
+  EXPECT_FALSE(checked(full, arena_.Lt(x, Num(1)), below));
+  EXPECT_FALSE(checked(full, arena_.Le(x, Num(1)), below));
+  p.rates[0] = arena_.Ite(shut, Num(0.5), Num(1));  // now it goes on rising
+  EXPECT_TRUE(checked(full, arena_.Lt(x, Num(1)), arena_.Le(x, Num(2.251))));
+  EXPECT_TRUE(checked(full, arena_.Le(x, Num(1)), arena_.Le(x, Num(2.251))));
+  EXPECT_FALSE(checked(full, arena_.Le(x, Num(1)), arena_.Le(x, Num(2.249))));
+  EXPECT_FALSE(checked(full, arena_.Le(x, Num(1.01)), arena_.Le(x, Num(2.251))));
 }
 
 // A parabola x = a - 2 t + t^2 with a in [0.9, 1.1] touches zero, or not: it is crossed twice or not at all.

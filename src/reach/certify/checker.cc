@@ -28,6 +28,7 @@ interval::Box Half(System& system, interval::Box box, size_t side, bool upper) {
 
 struct Part {
   interval::Box box;
+  interval::Box recorded;  ///< what the steps are about: itself, or what it is a piece of
   const std::vector<PartRecord::Step>* steps;
 };
 
@@ -36,7 +37,7 @@ bool Divide(System& system, const interval::Box& box, std::span<const PartRecord
             size_t depth, std::vector<Part>& parts) {
   if (records.empty() || depth > kMostCuts) return false;
   if (records.size() == 1 && records[0]->path.size() == depth) {
-    parts.push_back({box, &records[0]->steps});
+    parts.push_back({box, box, &records[0]->steps});
     return true;
   }
   const auto& copies = system.problem().copy_of;
@@ -62,19 +63,20 @@ std::string CheckPart(System& system, Bases& bases, const Part& part, size_t dep
       std::ranges::any_of(*part.steps, [](const PartRecord::Step& s) { return s.degree > kHighDegree; });
   if (high && depth == 0) {
     Follower cheap(system, bases, kLowDegree, stop);
-    std::string reason = cheap.Run(part.box, *part.steps);
+    std::string reason = cheap.Run(part.box, part.recorded, *part.steps);
     steps += cheap.steps();
     if (reason.empty() || stop.StopRequested()) return reason;
   }
   Follower follower(system, bases, kMostDegree, stop);
-  std::string reason = follower.Run(part.box, *part.steps);
+  std::string reason = follower.Run(part.box, part.recorded, *part.steps);
   steps += follower.steps();
   if (reason.empty() || depth == kMostSplits || stop.StopRequested()) return reason;
   const auto side = follower.WorstSide();
   if (!side) return reason;
   for (const bool upper : {false, true}) {
     std::string own =
-        CheckPart(system, bases, {Half(system, part.box, *side, upper), part.steps}, depth + 1, stop, steps);
+        CheckPart(system, bases, {Half(system, part.box, *side, upper), part.recorded, part.steps}, depth + 1,
+                  stop, steps);
     if (!own.empty()) return own;
   }
   return "";

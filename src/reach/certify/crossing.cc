@@ -1,5 +1,7 @@
 // Events that all of a set meets.
 #include <cmath>
+#include <map>
+#include <numeric>
 
 #include "reach/certify/follower.h"
 
@@ -35,17 +37,14 @@ bool Follower::Cross(Place& place, const PartRecord::Step& record) {
   for (const ModeGuard& g : place.in->guards) {
     if (g.event == record.event) guard = &g;
   }
-  if (guard == nullptr || !guard->IsComparison() || place.possible.size() != 1)
-    return Fail("there is no such event");
+  if (guard == nullptr || place.possible.size() != 1) return Fail("there is no such event");
   const double window = record.length;
   if (!(window > 0) || !(record.together >= 0)) return Fail("an event takes no time");
   const Interval left = place.left - Interval::Point(window) - Interval::Point(record.together);
   if (!(left.lo > 0)) return Fail("an event lasts beyond an instant");
   Pace to_event{1, std::vector<double>(place.set.basis->size()), 0};
   for (const auto& [exponents, factor] : record.time) {
-    const auto monomial =
-        exponents.size() == symbols_ ? place.set.basis->Find(exponents) : std::optional<size_t>();
-    if (monomial) to_event.polynomial[*monomial] += factor;
+    if (exponents.size() == symbols_) AddTime(place, exponents, factor, to_event.polynomial);
   }
   Pace rest = to_event;
   for (double& x : rest.polynomial) x = -x;
@@ -53,19 +52,49 @@ bool Follower::Cross(Place& place, const PartRecord::Step& record) {
   rest.polynomial[0] = window - at;
   rest.error = Up(Gamma(2) * (window + std::fabs(at)));
   for (std::vector<bool>& f : place.falls) f.assign(f.size(), false);
-  const std::shared_ptr<const ModeSystem> before = place.in;  // the guard lives there
-  double slope = HUGE_VAL;
-  if (!Move(place, to_event, guard, &slope) || !Switch(place, *guard, slope)) return false;
-  if (record.together > 0 && !Move(place, {record.together, {}, 0}, nullptr, nullptr)) return false;
-  if (!Move(place, rest, nullptr, nullptr)) return false;
+  Event event{place.in, guard};
+  if (!Move(place, to_event, event) || !Switch(place, event)) return false;
+  if (record.together > 0 && !Move(place, {record.together, {}, 0}, event)) return false;
+  if (!Move(place, rest, event)) return false;
   place.left = left;
   place.carried = 0;
   return true;
 }
 
-// Follows the set for all of the pace, in steps. No event happens but, perhaps, the expected one: then its
-// term falls, by at least `slope` in a second.
-bool Follower::Move(Place& place, const Pace& whole, const ModeGuard* expected, double* slope) {
+// A monomial in the symbols of the record, in ours: whatever it comes to would do.
+void Follower::AddTime(const Place& place, const std::vector<uint32_t>& exponents, double factor,
+                       std::vector<double>& time) const {
+  const uint64_t degree = std::accumulate(exponents.begin(), exponents.end(), uint64_t{0});
+  if (degree > place.set.basis->degree()) return;
+  std::map<std::vector<uint32_t>, double> parts{{std::vector<uint32_t>(symbols_), factor}};
+  for (size_t s = 0; s < symbols_; ++s) {
+    const auto [offset, scale] = place.recorded[s];
+    for (uint32_t power = 0; power < exponents[s]; ++power) {
+      std::map<std::vector<uint32_t>, double> product;  // times offset + scale * symbol
+      for (const auto& [own, part] : parts) {
+        auto higher = own;
+        ++higher[s];
+        product[own] += part * offset;
+        product[higher] += part * scale;
+      }
+      parts = std::move(product);
+    }
+  }
+  for (const auto& [own, part] : parts) {
+    if (const auto monomial = place.set.basis->Find(own)) time[*monomial] += part;
+  }
+}
+
+// Does the guard of the mode after lead back, and hold for the instant of the event at most, if its term
+// rises then? Back in the mode before, the event would follow at once.
+bool Follower::Returns(const Event& event, const ModeGuard& guard) {
+  return event.term && guard.IsComparison() && guard.after == event.before->modes[0] &&
+         system_.AreOpposite(guard.formula.terms[0], event.guard->formula.terms[*event.term]);
+}
+
+// Follows the set for all of the pace, in steps. No event happens but, perhaps, the one that is expected:
+// then one of its terms decides, and falls. Afterwards, its negation rises until it is certain.
+bool Follower::Move(Place& place, const Pace& whole, Event& event) {
   double share = kFirstShare;
   for (double done = 0; done < 1;) {  // shares are powers of two: sums are exact
     if (stop_.StopRequested()) return Fail("stopped");
@@ -79,10 +108,15 @@ bool Follower::Move(Place& place, const Pace& whole, const ModeGuard* expected, 
     Observation seen(*place.in, step);
     for (const ModeGuard& guard : place.in->guards) {
       if (seen.IsFalse(guard)) continue;
-      if (&guard != expected) return Fail("another event may happen");
-      const double falls = -seen.Slope(guard.first).hi;
+      if (place.in != event.before && Returns(event, guard) && seen.Slope(guard.first).lo > 0) continue;
+      if (&guard != event.guard) return Fail("another event may happen");
+      const auto ranges = seen.RangesOf(guard);
+      if (!event.term) event.term = guard.formula.Deciding(ranges);
+      if (!event.term || !guard.formula.ComesDownTo(*event.term, ranges))
+        return Fail("several comparisons decide an event");
+      const double falls = -seen.Slope(guard.first + *event.term).hi;
       if (!(falls > 0)) return Fail("an event is not met transversally");
-      *slope = std::fmin(*slope, falls);
+      event.slope = std::fmin(event.slope, falls);
     }
     if (!During(place, *place.in, seen)) return false;
     place.set = step.end();
@@ -94,8 +128,11 @@ bool Follower::Move(Place& place, const Pace& whole, const ModeGuard* expected, 
 }
 
 // From the mode before to the one after.
-bool Follower::Switch(Place& place, const ModeGuard& guard, double slope) {
+bool Follower::Switch(Place& place, const Event& event) {
   const ModeSystem& before = *place.in;
+  const ModeGuard& guard = *event.guard;
+  if (!event.term) return Fail("an event does not happen");
+  const size_t output = guard.first + *event.term;
   const auto made = system_.For({guard.after});
   if (!made.ok()) return Fail(made.error().message);
   const ModeSystem& after = *made.value();
@@ -103,7 +140,7 @@ bool Follower::Switch(Place& place, const ModeGuard& guard, double slope) {
   Image image;
   if (!image.Of(before.observed, place.set, before.dynamics.inputs))
     return Fail("the condition of an event is not defined");
-  const double term = Magnitude(image.Range(guard.first));
+  const double term = Magnitude(image.Range(output));
   // A box that no course leaves within twice the time by which the event may be early or late.
   const interval::Box start = place.set.Box();
   interval::Box box = start;
@@ -117,19 +154,26 @@ bool Follower::Switch(Place& place, const ModeGuard& guard, double slope) {
     OnBox on_before;
     OnBox on_after;
     OnBox on_terms;
+    OnBox on_guards;
     if (!Linearise(before.dynamics.rates, all, 0, on_before) ||
         !Linearise(after.dynamics.rates, all, 0, on_after) ||
-        !Linearise(before.observed, all, before.observed.outputs.size(), on_terms))
+        !Linearise(before.observed, all, before.observed.outputs.size(), on_terms) ||
+        !Linearise(after.observed, all, after.observed.outputs.size(), on_guards))
       return Fail("something is not defined around an event");
     interval::Box own(n);
+    interval::Box other(n);
     for (size_t i = 0; i < n; ++i) {
       own[i] = on_before.values[before.dynamics.rates.outputs[i]];
-      const Interval other = on_after.values[after.dynamics.rates.outputs[i]];
-      jumps[i] = own[i] - other;
-      rates[i] = interval::Hull(own[i], other);
+      other[i] = on_after.values[after.dynamics.rates.outputs[i]];
+      jumps[i] = own[i] - other[i];
+      rates[i] = interval::Hull(own[i], other[i]);
+    }
+    for (const ModeGuard& g : after.guards) {
+      if (Returns(event, g) && !(SlopeOf(on_guards, g.first, after.observed.variables.size(), other).lo > 0))
+        return Fail("an event may be taken back");
     }
     const double falls =
-        std::fmin(slope, -SlopeOf(on_terms, guard.first, before.observed.variables.size(), own).hi);
+        std::fmin(event.slope, -SlopeOf(on_terms, output, before.observed.variables.size(), own).hi);
     if (!(falls > 0)) return Fail("an event is not met transversally");
     late = Up(Up(term) / falls);
     inside = true;
@@ -145,21 +189,26 @@ bool Follower::Switch(Place& place, const ModeGuard& guard, double slope) {
   // What holds meanwhile.
   ReachSet around = place.set;
   around.AddErrors(DistanceIn(2 * late, rates));
-  if (!HoldsAround(place, before, around, &guard) || !HoldsAround(place, after, around, nullptr))
-    return false;
+  if (!HoldsAround(place, before, around, event) || !HoldsAround(place, after, around, event)) return false;
   place.set.AddErrors(DistanceIn(late, jumps));
   return Enter(place, {{guard.after, {}}});
 }
 
-// Do all claims hold there, and no event but the expected one?
+// Do all claims hold there, and no event but the one that is met?
 bool Follower::HoldsAround(const Place& place, const ModeSystem& in, const ReachSet& set,
-                           const ModeGuard* expected) {
+                           const Event& event) {
   Image image;
   if (!image.Of(in.observed, set, in.dynamics.inputs)) return Fail("a claim is not defined at an event");
   const auto range = [&](size_t output) { return image.Range(output); };
   for (const ModeGuard& guard : in.guards) {
-    const Truth truth = guard.formula.Check([&](size_t atom) { return range(guard.first + atom); });
-    if (&guard != expected && truth != Truth::kFalse) return Fail("another event may happen");
+    const auto own = [&](size_t atom) { return range(guard.first + atom); };
+    if (&guard == event.guard) {
+      if (!guard.formula.ComesDownTo(*event.term, own)) return Fail("several comparisons decide an event");
+    } else if (&in != event.before.get() && Returns(event, guard)) {
+      continue;  // Switch has looked at it
+    } else if (guard.formula.Check(own) != Truth::kFalse) {
+      return Fail("another event may happen");
+    }
   }
   for (const ModeClaim& claim : in.claims) {
     if (!IsDue(place, claim)) continue;

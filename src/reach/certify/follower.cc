@@ -24,7 +24,7 @@ bool Follower::Fail(std::string reason) {
 }
 
 // A symbol for each side that is not a point; copies of a state share its symbol.
-Follower::Place Follower::Begin(const interval::Box& box) {
+Follower::Place Follower::Begin(const interval::Box& box, const interval::Box& recorded) {
   const size_t n = box.size();
   const auto& copies = system_.problem().copy_of;
   symbol_.assign(n, std::nullopt);
@@ -48,6 +48,9 @@ Follower::Place Follower::Begin(const interval::Box& box) {
     p[0] = side.Middle();
     if (symbol_[i]) {
       p[1 + *symbol_[i]] = Radius(side);
+      if (i < copies.size() && copies[i]) continue;
+      const double radius = Radius(recorded[i]);
+      place.recorded.push_back({(side.Middle() - recorded[i].Middle()) / radius, Radius(side) / radius});
     } else {
       thin[static_cast<Eigen::Index>(i)] = Radius(side);
     }
@@ -56,11 +59,14 @@ Follower::Place Follower::Begin(const interval::Box& box) {
   return place;
 }
 
-std::string Follower::Run(const interval::Box& part, const std::vector<PartRecord::Step>& steps) {
+std::string Follower::Run(const interval::Box& part, const interval::Box& recorded,
+                          const std::vector<PartRecord::Step>& steps) {
   if (system_.IsEmpty(part)) return "";
   if (steps.empty()) return "a part of the initial set has no steps";
   hints_ = &steps;
-  Place place = Begin(part);
+  wanders_ = std::ranges::any_of(
+      steps, [](const PartRecord::Step& s) { return s.kind == PartRecord::Step::Kind::kSeveral; });
+  Place place = Begin(part, recorded);
   if (!Enter(place, {{system_.modes().start(), {}}})) return reason_;
   for (size_t c = 0; c < place.falls.size(); ++c) place.falls[c] = place.in->claims[c].starts_below;
   Follow(std::move(place));
@@ -197,7 +203,8 @@ bool Follower::TakeStep(Place& place, double wanted) {
   Observation seen(*place.in, step);
   auto quiet = Quiet(place, seen);
   if (!quiet) {
-    if (!place.open && place.possible.size() == 1) return Fail("an event may happen");
+    // Nearby the engine found it uncertain, too: only sooner or later.
+    if (!place.open && !wanders_ && place.possible.size() == 1) return Fail("an event may happen");
     return Wander(place, wanted);
   }
   place.possible = std::move(*quiet);
@@ -240,6 +247,9 @@ bool Follower::Split(const Place& place, size_t symbol) {
   for (const bool upper : {false, true}) {
     Place half = place;
     half.set = place.set.Half(symbol, upper);
+    Scale& scale = half.recorded[symbol];
+    const double middle = upper ? 0.5 : -0.5;  // of the half, in its symbol
+    scale = {2 * (scale.offset + middle * scale.scale - middle), scale.scale};
     if (!Follow(std::move(half))) return false;
   }
   return true;

@@ -1,6 +1,11 @@
 #pragma once
 
+#include <cmath>
+#include <memory>
+#include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "base/stop.h"
 #include "reach/certify/checker.h"
@@ -18,7 +23,10 @@ class Follower {
       : system_(system), bases_(bases), most_degree_(most_degree), stop_(stop) {}
 
   /// Why the claims are not shown; empty if they are.
-  std::string Run(const interval::Box& part, const std::vector<PartRecord::Step>& steps);
+  ///
+  /// @param recorded  the part that the steps were recorded for: this one, or a larger one.
+  std::string Run(const interval::Box& part, const interval::Box& recorded,
+                  const std::vector<PartRecord::Step>& steps);
   size_t steps() const { return steps_; }
   /// After a failure: the side of the part whose halves should be looked at, each on its own, if there is
   /// one.
@@ -32,6 +40,10 @@ class Follower {
     std::set<TermId> rising;
     bool operator==(const Possible&) const = default;
   };
+  // What a symbol of the record is in terms of ours: offset + scale * symbol.
+  struct Scale {
+    double offset = 0, scale = 1;
+  };
   // How far a set has come.
   struct Place {
     ReachSet set;
@@ -43,9 +55,10 @@ class Follower {
     double carried = 0;                    ///< what is left of a step that was too long
     bool open = false;                     ///< may events happen in what is left of it?
     std::vector<std::vector<bool>> falls;  ///< by claim and term: at most zero since the start?
+    std::vector<Scale> recorded;           ///< by symbol
   };
 
-  Place Begin(const interval::Box& box);
+  Place Begin(const interval::Box& box, const interval::Box& recorded);
   bool Enter(Place& place, std::vector<Possible> possible);
   static void SetDiscrete(const ModeSystem& in, ReachSet& set);
   bool Follow(Place place);
@@ -69,9 +82,19 @@ class Follower {
   bool During(const Place& place, const ModeSystem& in, Observation& seen);
 
   bool Cross(Place& place, const PartRecord::Step& record);
-  bool Move(Place& place, const Pace& whole, const ModeGuard* expected, double* slope);
-  bool Switch(Place& place, const ModeGuard& guard, double slope);
-  bool HoldsAround(const Place& place, const ModeSystem& in, const ReachSet& set, const ModeGuard* expected);
+  void AddTime(const Place& place, const std::vector<uint32_t>& exponents, double factor,
+               std::vector<double>& time) const;
+  // An event that is met: which of its terms decides, and how fast that falls, as has been seen so far.
+  struct Event {
+    std::shared_ptr<const ModeSystem> before;
+    const ModeGuard* guard;  ///< one of its
+    std::optional<size_t> term = std::nullopt;
+    double slope = HUGE_VAL;
+  };
+  bool Move(Place& place, const Pace& whole, Event& event);
+  bool Switch(Place& place, const Event& event);
+  bool HoldsAround(const Place& place, const ModeSystem& in, const ReachSet& set, const Event& event);
+  bool Returns(const Event& event, const ModeGuard& guard);
 
   static constexpr size_t kMostRounds = 32;  ///< of events at one instant, or in one step
   static constexpr size_t kMostPossible = 64;
@@ -81,6 +104,7 @@ class Follower {
   size_t most_degree_;
   const base::StopToken& stop_;
   const std::vector<PartRecord::Step>* hints_ = nullptr;
+  bool wanders_ = false;  ///< is there a step among them during which several modes are possible?
   std::vector<std::optional<size_t>> symbol_;  ///< by state
   size_t next_hint_ = 0;
   size_t symbols_ = 0;

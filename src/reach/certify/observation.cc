@@ -53,6 +53,10 @@ bool Observation::IsFalse(const ModeGuard& guard) {
   return guard.formula.Check([&](size_t atom) { return Range(guard.first + atom, 0, 1); }) == Truth::kFalse;
 }
 
+std::function<Interval(size_t)> Observation::RangesOf(const ModeGuard& guard) {
+  return [this, first = guard.first](size_t atom) { return Range(first + atom, 0, 1); };
+}
+
 bool Observation::Holds(const ModeClaim& claim, const std::vector<bool>& below) {
   const auto known = [&](size_t atom, Interval range) { return below[atom] ? AtMostZero(range) : range; };
   const auto coarse = [&](size_t atom) {

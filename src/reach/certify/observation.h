@@ -11,6 +11,8 @@ class Observation {
 
   /// Is the condition certainly false at all times of the step?
   bool IsFalse(const ModeGuard& guard);
+  /// What the terms of the condition are during the step.
+  std::function<Interval(size_t)> RangesOf(const ModeGuard& guard);
   /// Does the claim hold at all times of the step? `below`: terms that are known to be at most zero.
   bool Holds(const ModeClaim& claim, const std::vector<bool>& below);
   /// Does a term that is at most zero when the step begins stay so? If g' <= r g along every course, for some

@@ -166,6 +166,18 @@ double MissOf(const Formula& f, size_t n, const std::function<double(size_t)>& v
 Truth Formula::Check(const std::function<Interval(size_t)>& range) const {
   return CheckNode(*this, root, range);
 }
+bool Formula::ComesDownTo(size_t term, const std::function<Interval(size_t)>& range) const {
+  const auto with = [&](double value) {
+    return Check([&](size_t atom) { return atom == term ? Interval::Point(value) : range(atom); });
+  };
+  return with(-1) == Truth::kTrue && with(1) == Truth::kFalse;
+}
+std::optional<size_t> Formula::Deciding(const std::function<Interval(size_t)>& range) const {
+  for (size_t term = 0; term < terms.size(); ++term) {
+    if (range(term).lo <= 0 && ComesDownTo(term, range)) return term;
+  }
+  return std::nullopt;
+}
 double Formula::Miss(const std::function<double(size_t)>& value) const { return MissOf(*this, root, value); }
 
 base::Result<Formula> Normalise(expr::Arena& arena, TermId formula) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "reach/system/program.h"
@@ -24,6 +25,11 @@ struct Formula {
 
   /// What is known of the formula where the terms lie in these intervals.
   Truth Check(const std::function<Interval(size_t)>& range) const;
+  /// Does the formula hold, where the terms lie in these intervals, if and only if its comparisons of this
+  /// term do?
+  bool ComesDownTo(size_t term, const std::function<Interval(size_t)>& range) const;
+  /// The term that it comes down to there, among those that may be zero or less; nothing if there is none.
+  std::optional<size_t> Deciding(const std::function<Interval(size_t)>& range) const;
   /// By how much the formula fails, at most, where the terms have these values: 0 or less if it holds. A
   /// strict comparison of what is exactly equal fails by 1: modes are exact.
   double Miss(const std::function<double(size_t)>& value) const;

@@ -8,6 +8,13 @@ namespace rondo::reach {
 
 namespace odeint = boost::numeric::odeint;
 
+namespace {
+
+constexpr size_t kMostCrowded = 50;
+constexpr double kCrowded = 1e-9;  // of the horizon
+
+}  // namespace
+
 void Evaluator::operator()(std::span<const double> variables, std::span<double> outputs) {
   const Program& p = program_;
   for (size_t n = 0; n < p.code.size(); ++n) {
@@ -156,6 +163,8 @@ bool Trajectories::Run(const Course& course, double resolution,
   const double period = problem_->controller ? problem_->controller->period.ToDouble() : horizon;
   double suggested = 1e-7 * horizon;
   double t = 0;
+  double last_event = -horizon;
+  size_t crowded = 0;  // events, one after the other with hardly any time between them
   const size_t samples = Samples(*problem_);
   if (!problem_->controller) {
     if (!Settle(x)) return false;
@@ -214,6 +223,9 @@ bool Trajectories::Run(const Course& course, double resolution,
       if (!integrate(end_state, t, next)) return false;
       if (Happens(end_state, after)) {
         locate(t, next, end_state);
+        crowded = next - last_event < kCrowded * (1 + horizon) ? crowded + 1 : 0;
+        last_event = next;
+        if (crowded > kMostCrowded) return false;
         if (!visit(next, end_state)) return true;
         if (!Settle(end_state)) return false;
       }

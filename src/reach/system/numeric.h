@@ -47,7 +47,7 @@ class Trajectories {
   /// Calls `visit` with increasing times, the start (as the controller leaves it), both sides of each later
   /// sampling instant and of each event and the horizon included, at most `resolution` seconds apart, until
   /// it returns false. An event whose condition holds for less than that may be missed. False if the state is
-  /// not finite any more, or if events follow one another without end.
+  /// not finite any more, or if events follow one another without end, or as if.
   bool Run(const Course& course, double resolution,
            const std::function<bool(double, std::span<const double>)>& visit, double tolerance = 1e-13);
   /// How far claim `c` is from holding in this state.

@@ -41,7 +41,8 @@ Polynomial Divide(const Monomials& monomials, const Polynomial& a, const Polynom
 
 }  // namespace
 
-// A set in one mode meets one event.
+// A set in one mode meets one event. Its condition may be made of several comparisons, as long as all of them
+// but one are decided wherever it is looked at.
 //
 // With a time q(s) for each start, the flow of q f over one unit of "time" leads each start to the boundary
 // of the condition, but for a residual. The flow of f' in the mode after, for the same time T for all of
@@ -66,6 +67,7 @@ class Runner::Crossing {
     FlowSet there;
     Next next = Move(*scaled.value(), Extended(state_.set, time_), 1, true, there);
     if (next == Next::kChanged) next = Switch(*scaled.value(), *after.value(), there);
+    left_ = guard_->formula.terms[term_];
     guard_ = nullptr;
     const double together = std::min(window_, 0.99 * (until - end_));
     end_ += together;
@@ -98,6 +100,21 @@ class Runner::Crossing {
   std::optional<size_t> Decisive() const { return decisive_; }
 
  private:
+  static std::function<Interval(size_t)> RangesIn(const Guard& guard, Flow& flow) {
+    return [&stepper = flow.stepper(), &guard](size_t atom) {
+      return stepper.Observed(guard.first + atom, 0, stepper.h(), true);
+    };
+  }
+  // An event of the mode after that leads back, and whose condition is the negation of the one that was met:
+  // it holds for the instant of the switch at most, if its term rises then. Back in the mode before, the
+  // first event would follow at once.
+  bool Returns(const Guard& g) const {
+    const TermId term = guard_ != nullptr ? guard_->formula.terms[term_] : left_;
+    return g.IsComparison() && g.after == before_.modes[0] &&
+           r_.stages_.AreOpposite(g.formula.terms[0], term);
+  }
+  size_t Output() const { return guard_->first + term_; }
+
   // How long until all of the set has met the event, if it does so with a definite rate? Which event?
   bool Probe(double until) {
     begin_ = state_.time;
@@ -121,21 +138,26 @@ class Runner::Crossing {
     for (size_t probe = 0; probe < kMostProbes && flow.time() < until; ++probe) {
       if (r_.stop_.StopRequested() || !flow.Step(until)) return false;
       for (const Guard& g : before_.guards) {
-        if (&g == guard_ || r_.During(g, flow) == Truth::kFalse) continue;
-        if (guard_ != nullptr || !g.IsComparison()) return false;
-        guard_ = &g;
+        if (r_.During(g, flow) == Truth::kFalse) continue;
+        if (guard_ == nullptr) {
+          const auto term = g.formula.Deciding(RangesIn(g, flow));
+          if (!term) return false;
+          guard_ = &g;
+          term_ = *term;
+        }
+        if (&g != guard_ || !g.formula.ComesDownTo(term_, RangesIn(g, flow))) return false;
       }
       if (guard_ == nullptr) continue;
       if (!known && probe > 0) return false;
       known = true;
-      const Interval rate = flow.stepper().ObservedRate(guard_->first);
+      const Interval rate = flow.stepper().ObservedRate(Output());
       if (!(rate.hi < 0)) return false;
       falls_ = true;
       least_rate_ = std::min(least_rate_, -rate.hi);
       window_ = flow.time() - begin_;
       if (all) return flow.time() < until;  // one step more than necessary
       if (!observe.Apply(flow.set())) return false;
-      all = observe.Range(guard_->first).hi < 0;
+      all = observe.Range(Output()).hi < 0;
     }
     return false;
   }
@@ -160,8 +182,10 @@ class Runner::Crossing {
       if (!flow.Step(duration) || r_.TooWide(flow, 0.1)) return Next::kNo;
       if (!keep) continue;
       for (const Guard& g : stage.guards) {
+        if (r_.During(g, flow) == Truth::kFalse) continue;
+        if (guard_ == nullptr && Returns(g) && flow.stepper().ObservedRate(g.first).lo > 0) continue;
         const bool expected = guard_ != nullptr && g.event == guard_->event;
-        if (!expected && r_.During(g, flow) != Truth::kFalse) return Next::kNo;
+        if (!expected || !g.formula.ComesDownTo(term_, RangesIn(g, flow))) return Next::kNo;
       }
       r_.Keep(stage, begin_, end_, flow.stepper().during());
       if (!r_.During(flow, stage, begin_, end_)) return Next::kFailed;
@@ -218,7 +242,7 @@ class Runner::Crossing {
     if (!middle.Decide(branches, held) || !series.Compute(0, branches, held)) return false;
     for (size_t i = 0; i < n; ++i) series.SetFromDerivative(i, i, 0);
     if (!series.Compute(1, branches, held)) return false;
-    const size_t node = p.outputs[n + guard_->first];
+    const size_t node = p.outputs[n + Output()];
     const auto of = [&](size_t order) {
       const auto model = series.At(node, order).polynomial;
       return Polynomial(model.begin(), model.end());
@@ -277,7 +301,7 @@ class Runner::Crossing {
     const size_t n = there.dimension;
     Map observe(before_.observed, n, before_.dynamics.inputs, r_.monomials_);
     if (!observe.Apply(there)) return Next::kNo;
-    const double late = Above(Magnitude(observe.Range(guard_->first)) / Below(least_rate_));
+    const double late = Above(Magnitude(observe.Range(Output())) / Below(least_rate_));
     // A box that no course leaves within twice that time, whatever mode it is in.
     interval::Box box(n), rates(n), jumps(n);
     for (size_t i = 0; i < n; ++i) {
@@ -305,6 +329,9 @@ class Runner::Crossing {
       }
     }
     if (!inside) return Next::kNo;
+    for (const Guard& g : after.guards) {
+      if (Returns(g) && !RisesOn(after, box, g)) return Next::kNo;
+    }
     // What holds meanwhile.
     FlowSet around = there;
     for (size_t i = 0; i < n; ++i) around.slack[i] = Above(around.slack[i] + 2 * late * Magnitude(rates[i]));
@@ -334,17 +361,39 @@ class Runner::Crossing {
     return true;
   }
 
+  // Does the term of a comparison rise wherever the flow of the stage is on this box?
+  static bool RisesOn(const Stage& stage, interval::Box box, const Guard& guard) {
+    box.push_back(Interval::Point(1));  // the factor
+    const Program& p = stage.dynamics.program;
+    BoxSeries values(p, 1);
+    for (size_t i = 0; i < box.size(); ++i) values.SetVariable(i, 0, box[i]);
+    for (size_t w = 0; w < stage.dynamics.inputs.size(); ++w)
+      values.SetVariable(box.size() + w, 0, stage.dynamics.inputs[w]);
+    std::vector<Branch> branches(p.code.size(), Branch::kEither);
+    std::vector<Interval> held(p.code.size());
+    if (!values.Decide(branches, held)) return false;
+    std::vector<Interval> gradient;
+    values.Gradient({p.outputs[box.size() + guard.first]}, branches, {}, true, gradient);
+    Interval rate = Interval::Point(0);
+    for (size_t v = 0; v < gradient.size(); ++v) {
+      if (gradient[v] == Interval::Point(0)) continue;
+      if (v >= box.size()) return false;  // an input, which jumps
+      rate = rate + gradient[v] * values.Of(p.outputs[v], 0);
+    }
+    return rate.lo > 0;
+  }
+
   Next Holds(const Stage& stage, const FlowSet& around, bool is_before) {
     Map observe(stage.observed, stage.dynamics.states, stage.dynamics.inputs, r_.monomials_);
     const Polynomial one{1};
     const FlowSet set = Extended(around, one);
     if (!observe.Apply(set)) return Next::kNo;
-    const auto truth = [&](const Formula& formula, size_t first) {
-      return formula.Check([&](size_t atom) { return observe.Range(first + atom); });
-    };
     for (const Guard& g : stage.guards) {
+      const auto range = [&](size_t atom) { return observe.Range(g.first + atom); };
       const bool expected = is_before && g.event == guard_->event;
-      if (!expected && truth(g.formula, g.first) != Truth::kFalse) return Next::kNo;
+      if (!is_before && Returns(g)) continue;
+      if (expected ? !g.formula.ComesDownTo(term_, range) : g.formula.Check(range) != Truth::kFalse)
+        return Next::kNo;
     }
     for (const StageQuery& q : stage.queries) {
       if (r_.queries_ == nullptr) break;
@@ -370,6 +419,8 @@ class Runner::Crossing {
   State& state_;
   const Stage& before_;
   const Guard* guard_ = nullptr;
+  size_t term_ = 0;    ///< of the guard: the one that decides
+  TermId left_;        ///< that one, once it has been met
   double begin_ = 0;   ///< of what is looked at, seconds
   double window_ = 0;  ///< all of the set meets the event within it
   double end_ = 0;

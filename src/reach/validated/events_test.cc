@@ -39,11 +39,11 @@ class Events : public testing::Test {
     return p;
   }
   // In a phase, as soon as something holds: another phase, and counted.
-  void When(Problem& p, double phase, TermId condition, double next) {
+  void When(Problem& p, double phase, TermId condition, double next, bool counted = true) {
     Event e{arena_.And({Is(phase_, phase), condition}), {}};
     e.updates.resize(p.states.size());
     e.updates[p.states.size() - 2] = Num(next);
-    e.updates[p.states.size() - 1] = Sum(count_, Num(1));
+    if (counted) e.updates[p.states.size() - 1] = Sum(count_, Num(1));
     p.events.push_back(std::move(e));
   }
   void Always(Problem& p, TermId formula) { p.claims.push_back({"always", formula, Rational(0), p.horizon}); }
@@ -210,6 +210,62 @@ TEST_F(Events, KnowledgeOfRatesEndsWhereTheControllerActs) {
   }
 }
 
+// What decides may be one of several comparisons.
+TEST_F(Events, ConditionsOfSeveralComparisons) {
+  const TermId fast = arena_.Le(Num(0.8), arena_.Apply(expr::Elementary::kAbs, {y_}));
+  const TermId slow = arena_.Le(arena_.Apply(expr::Elementary::kAbs, {y_}), Num(0.2));
+  // x = a cos t, y = -a sin t until |y| = 0.8; then x and y stay; both claims are about that instant.
+  const TermId zero = Num(0);
+  Problem p = Make({x_, y_}, {In(0, y_, zero), In(0, arena_.Neg(x_), zero)}, {{1, 1.1}, {0, 0}}, 2);
+  When(p, 0, fast, 1);
+  When(p, 1, slow, 2);
+  Finally(p, arena_.And({Is(count_, 1), arena_.Le(y_, Num(-0.7999)), arena_.Le(Num(0.5999), x_)}));
+  EXPECT_TRUE(std::holds_alternative<Proved>(Decided(p)));
+  p.claims[0].formula = arena_.Le(y_, Num(-0.8001));
+  EXPECT_FALSE(std::holds_alternative<Proved>(Decided(p)));
+  // x falls from 1 to 0 while y rises from -1: both conditions are met, the second of them at 1 / a.
+  for (const bool both : {true, false}) {
+    Problem q = Make({x_, y_}, {Num(-1), Num(0.5)}, {{1, 1.05}, {-0.95, -0.9}}, 3);
+    const std::vector<TermId> parts{arena_.Le(x_, zero), arena_.Le(zero, y_)};
+    When(q, 0, both ? arena_.And(parts) : arena_.Or(parts), 1);
+    q.rates[1] = In(0, Num(0.5), zero);
+    Finally(q, both ? arena_.Le(arena_.Apply(expr::Elementary::kAbs, {y_}), Num(1e-6))
+                    : arena_.And({arena_.Le(y_, Num(-0.37)), Is(count_, 1)}));
+    EXPECT_TRUE(std::holds_alternative<Proved>(Decided(q))) << both;
+    q.claims[0].formula = both ? arena_.Le(y_, Num(-1e-6)) : arena_.Le(y_, Num(-0.43));
+    EXPECT_FALSE(std::holds_alternative<Proved>(Decided(q))) << both;
+  }
+}
+
+// On each side of x = 0 another flow. If both lead through, the mode is the side; else nothing is known of
+// it.
+TEST_F(Events, WithoutHysteresis) {
+  for (const bool strict : {true, false}) {
+    const auto make = [&](double before, double after, double horizon = 3) {
+      Problem p = Make({x_, y_}, {In(0, Num(before), Num(after)), Num(1)}, {{1, 1.5}, {0, 0}}, horizon);
+      When(p, 0, arena_.Le(x_, Num(0)), 1, false);
+      When(p, 1, strict ? arena_.Lt(Num(0), x_) : arena_.Le(Num(0), x_), 0, false);
+      return p;
+    };
+    Problem through = make(-1, -2);
+    Finally(through, arena_.And({Is(phase_, 1), arena_.Le(x_, Num(-2.999)), arena_.Le(Num(-4.001), x_)}));
+    EXPECT_TRUE(std::holds_alternative<Proved>(Decided(through)));
+    through.claims[0].formula = arena_.Le(x_, Num(-3.1));
+    EXPECT_FALSE(std::holds_alternative<Proved>(Decided(through)));
+    Problem back = make(-1, 2, 1.52);  // slides along x = 0
+    Finally(back, Is(phase_, 1));
+    ProverOptions options;
+    options.samples = 0;
+    options.most_leaves = 1;
+    const auto slides = Decide(back, options, base::StopToken());
+    EXPECT_TRUE(slides.ok() && !std::holds_alternative<Proved>(slides.value()));
+    Problem counted = make(-1, -2);
+    counted.events[1].updates[3] = Sum(count_, Num(1));  // toggles at the instant may be counted
+    Finally(counted, Is(count_, 0));
+    EXPECT_EQ(std::holds_alternative<Proved>(Decided(counted, 1)), strict);
+  }
+}
+
 // Random systems that switch between linear flows: no trajectory leaves its tube, and no bound that one
 // exceeds is proved.
 TEST_F(Events, RandomSwitchedSystems) {
@@ -233,9 +289,20 @@ TEST_F(Events, RandomSwitchedSystems) {
     Problem p = Make({x_, y_},
                      {In(0, linear(), In(1, linear(), linear())), In(0, linear(), In(1, linear(), linear()))},
                      {{cx - radius, cx + radius}, {cy - radius, cy + radius}}, 2);
-    for (int e = 0; e < 3; ++e) {
-      const TermId term = round % 2 == 0 ? linear() : arena_.Add(arena_.Mul(x_, x_), linear());
-      When(p, e, e % 2 == 0 ? arena_.Le(term, Num(0)) : arena_.Lt(term, Num(0)), (e + 1) % 3);
+    const auto term = [&] { return round % 2 == 0 ? linear() : arena_.Add(arena_.Mul(x_, x_), linear()); };
+    if (round % 5 == 1) {  // two modes, on the two sides of one boundary
+      const TermId boundary = term();
+      When(p, 0, arena_.Le(boundary, Num(0)), 1, round % 2 == 0);
+      When(p, 1, round % 3 == 0 ? arena_.Le(Num(0), boundary) : arena_.Lt(Num(0), boundary), 0, false);
+    } else {
+      for (int e = 0; e < 3; ++e) {
+        TermId condition = e % 2 == 0 ? arena_.Le(term(), Num(0)) : arena_.Lt(term(), Num(0));
+        if (round % 5 == 2) condition = arena_.And({condition, arena_.Le(linear(), Num(1))});
+        if (round % 5 == 3)
+          condition =
+              arena_.Or(condition, arena_.Le(Num(1), arena_.Apply(expr::Elementary::kAbs, {linear()})));
+        When(p, e, condition, (e + 1) % 3);
+      }
     }
     Always(p, arena_.Le(x_, Num(50)));
     const Outcome outcome = Decided(p, 6);
@@ -267,7 +334,7 @@ TEST_F(Events, RandomSwitchedSystems) {
         }
         if (t == 0) inside = true;  // before the events of the start
         EXPECT_TRUE(inside) << "system " << round << ", trajectory " << k << ", at " << t;
-        events += x.back() > 0 ? 1 : 0;
+        events += x[2] > 0 ? 1 : 0;
         return inside;
       });
     }
