@@ -97,6 +97,23 @@ def sweeps(rondo, folder):
     check(2.76 < boundary < 2.76 + 3 * 7 / 64, f"the proved boundary is {boundary}")
     refuted = next(p["to"] for p in reversed(parts) if p["verdict"] == "refuted")
     check(refuted <= boundary and refuted > 2.4, f"refuted up to {refuted}")
+    # A start that is a parameter, a parameter with a default: 4 e^0.4 is 5.967.
+    grows = folder / "grows.rondo"
+    grows.write_text("""robot Grows {
+  state x: length in [-9 m, 9 m]
+  dynamics { x' = x / 1 s }
+  motion Go(x0: length in [1 m, 4 m], room: length = 5 m) noninterruptible [0.4 s, 0.4 s] {
+    modifies x
+    pre x == x0
+    during x <= room
+  }
+}
+""")
+    done = run(rondo, "reach", "--json", "--no-cache", grows)
+    check(json.loads(done.stdout)["contracts"][0]["verdict"] == "refuted", f"{done.stdout}")
+    done = run(rondo, "reach", "--json", "--sweep", "room", "5..7", "--parts", "2", grows)
+    parts = json.loads(done.stdout)["sweeps"][0]["parts"]
+    check([(p["verdict"], p["to"]) for p in parts] == [("refuted", 6), ("proved", 7)], f"{parts}")
     # Behind a choreography: every robot that has the parameter.
     team = folder / "team.rondo"
     team.write_text("""import "ball.rondo"

@@ -20,6 +20,45 @@ double SizeOf(const std::vector<double>& state) {
 
 }  // namespace
 
+// Points at random satisfy no equation, such as `x == x0`. Of several states in one, the first is determined.
+void Search::FindEquations() {
+  expr::Arena& arena = *problem_.arena;
+  const std::vector<TermId> terms = Necessary(stages_.assumed());
+  for (const TermId term : terms) {
+    if (std::ranges::find(terms, arena.Neg(term)) == terms.end()) continue;
+    const auto free = [&](size_t i) {
+      return !problem_.initial[i].IsPoint() && !(i < problem_.copy_of.size() && problem_.copy_of[i]) &&
+             std::ranges::none_of(equations_, [&](const Equation& e) { return e.state == i; });
+    };
+    for (size_t i = 0; i < problem_.states.size(); ++i) {
+      if (!free(i)) continue;
+      // Linear in this state, with a number as its factor?
+      const auto at = [&](int64_t value) {
+        return expr::Substitute(arena, term,
+                                {{problem_.states[i], arena.Number(arena.Real(), Rational(value))}});
+      };
+      const TermId slope = arena.Sub(at(1), at(0));
+      if (!arena.IsNumber(slope) || arena.number(slope).IsZero()) continue;
+      const TermId line = arena.Add(arena.Mul(slope, problem_.states[i]), at(0));
+      if (arena.Sub(term, line) != arena.Number(arena.Real(), Rational(0))) continue;
+      equations_.push_back(
+          {i, arena.Mul(arena.Number(arena.Real(), Rational(-1) / arena.number(slope)), at(0))});
+      break;
+    }
+  }
+}
+
+void Search::Solve(std::vector<double>& start) const {
+  expr::Arena& arena = *problem_.arena;
+  for (const Equation& e : equations_) {
+    expr::Substitution values;
+    for (size_t i = 0; i < start.size(); ++i)
+      values.emplace(problem_.states[i], arena.Number(arena.Real(), Rational::FromDouble(start[i])));
+    const TermId value = expr::Substitute(arena, e.value, values);
+    if (arena.IsNumber(value)) start[e.state] = NearestConstant(arena.number(value)).factor;
+  }
+}
+
 std::optional<Refuted> Search::Try(std::vector<double> start) {
   for (size_t i = 0; i < problem_.copy_of.size(); ++i) {
     if (problem_.copy_of[i]) start[i] = start[*problem_.copy_of[i]];
@@ -132,12 +171,14 @@ std::optional<Refuted> Search::Run(size_t samples) {
         start[i] = std::min(box[i].hi, box[i].lo + u * (box[i].hi - box[i].lo));
       }
     }
+    Solve(start);
     // Bounds are rounded outwards: a corner may be just outside.
     if (corner && !MayStart(start)) {
       for (size_t i = 0; i < n; ++i) {
         const double inset = 1e-9 * box[i].Width();
         start[i] = std::clamp(start[i], box[i].lo + inset, box[i].hi - inset);
       }
+      Solve(start);
     }
     if (auto refuted = Try(std::move(start))) return refuted;
   }

@@ -20,7 +20,9 @@ class Search {
         options_(options),
         trajectories_(trajectories),
         stop_(stop),
-        random_(options.seed) {}
+        random_(options.seed) {
+    FindEquations();
+  }
 
   /// Of so many starts.
   std::optional<Refuted> Run(size_t samples);
@@ -31,6 +33,13 @@ class Search {
   const std::optional<Violation>& closest() const { return closest_; }
 
  private:
+  // A state that an assumption determines, given the others.
+  struct Equation {
+    size_t state;
+    TermId value;  ///< in terms of the others
+  };
+  void FindEquations();
+  void Solve(std::vector<double>& start) const;
   bool MayStart(const std::vector<double>& start);
   interval::Box StartBox(const std::vector<double>& start) const;
   bool Confirm(const Refuted& refuted);
@@ -43,6 +52,7 @@ class Search {
   Trajectories& trajectories_;
   const base::StopToken& stop_;
   std::mt19937_64 random_;
+  std::vector<Equation> equations_;
   std::optional<Violation> closest_;
 };
 

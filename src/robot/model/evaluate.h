@@ -18,7 +18,7 @@ struct Scope {
   const Value* Find(std::string_view name) const;
 };
 
-/// A parameter of robots that may have any value between two bounds instead of its own.
+/// A parameter of robots or their motions that may have any value between two bounds instead of its own.
 struct Loose {
   std::string name;
   expr::Rational least, most;  ///< in SI units

@@ -476,7 +476,16 @@ std::vector<MotionInstance> MotionsOf(const RobotDef& type, Evaluator& e, World&
     for (size_t i = 0; i < args.size(); ++i) {
       const Param& p = motion->params[i];
       spans.push_back(p.name.span);
-      if (p.value.valid()) continue;
+      if (p.value.valid()) {
+        if (e.loose() == nullptr || e.loose()->name != p.name.text) continue;
+        const Value own = e.Evaluate(p.value, body.scope);
+        if (own.kind != ValueKind::kQuantity) continue;
+        const TermId some = arena.FreshConstant(p.name.text, arena.Real());
+        args[i] = Quantity(some, own.dimension);
+        unknowns.push_back({p.name, own.dimension, some, arena.Number(arena.Real(), e.loose()->least),
+                            arena.Number(arena.Real(), e.loose()->most)});
+        continue;
+      }
       const lang::Dimension* d = lang::FindDimension(p.dimension.text);
       known = known && d != nullptr && p.least.valid() && p.most.valid();
       if (!known) {
