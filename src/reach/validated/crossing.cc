@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reach/validated/around.h"
 #include "reach/validated/bound.h"
 #include "reach/validated/runner.h"
 
@@ -295,6 +296,12 @@ class Runner::Crossing {
     return range.lo > 0 && range.hi < window_;
   }
 
+  // A box of a scaled stage, where the factor is one.
+  static interval::Box Unscaled(interval::Box box) {
+    box.push_back(Interval::Point(1));
+    return box;
+  }
+
   // From the mode before to the mode after, where the set is. kChanged: `there` encloses the starts of the
   // flow after.
   Next Switch(const Stage& before, const Stage& after, FlowSet& there) {
@@ -312,8 +319,7 @@ class Runner::Crossing {
     const Interval time{-2 * late, 2 * late};
     bool inside = false;
     for (int attempt = 0; attempt < 20 && !inside; ++attempt) {
-      interval::Box all = box;
-      all.push_back(Interval::Point(1));  // the factor
+      const interval::Box all = Unscaled(box);
       if (!RatesOn(before, all, rates) || !RatesOn(after, all, jumps)) return Next::kNo;
       inside = true;
       for (size_t i = 0; i < n; ++i) {
@@ -330,7 +336,7 @@ class Runner::Crossing {
     }
     if (!inside) return Next::kNo;
     for (const Guard& g : after.guards) {
-      if (Returns(g) && !RisesOn(after, box, g)) return Next::kNo;
+      if (Returns(g) && !RisesOn(after, Unscaled(box), g)) return Next::kNo;
     }
     // What holds meanwhile.
     FlowSet around = there;
@@ -345,42 +351,6 @@ class Runner::Crossing {
     for (size_t i = 0; i < n; ++i)
       there.slack[i] = Above(there.slack[i] + late * Magnitude(jumps[i]) + rounded * Magnitude(rates[i]));
     return Next::kChanged;
-  }
-
-  // False if some function is not defined on all of the box.
-  static bool RatesOn(const Stage& stage, const interval::Box& box, interval::Box& rates) {
-    const Program& p = stage.dynamics.program;
-    BoxSeries values(p, 1);
-    for (size_t i = 0; i < box.size(); ++i) values.SetVariable(i, 0, box[i]);
-    for (size_t w = 0; w < stage.dynamics.inputs.size(); ++w)
-      values.SetVariable(box.size() + w, 0, stage.dynamics.inputs[w]);
-    std::vector<Branch> branches(p.code.size(), Branch::kEither);
-    std::vector<Interval> held(p.code.size());
-    if (!values.Decide(branches, held)) return false;
-    for (size_t i = 0; i < rates.size(); ++i) rates[i] = values.Of(p.outputs[i], 0);
-    return true;
-  }
-
-  // Does the term of a comparison rise wherever the flow of the stage is on this box?
-  static bool RisesOn(const Stage& stage, interval::Box box, const Guard& guard) {
-    box.push_back(Interval::Point(1));  // the factor
-    const Program& p = stage.dynamics.program;
-    BoxSeries values(p, 1);
-    for (size_t i = 0; i < box.size(); ++i) values.SetVariable(i, 0, box[i]);
-    for (size_t w = 0; w < stage.dynamics.inputs.size(); ++w)
-      values.SetVariable(box.size() + w, 0, stage.dynamics.inputs[w]);
-    std::vector<Branch> branches(p.code.size(), Branch::kEither);
-    std::vector<Interval> held(p.code.size());
-    if (!values.Decide(branches, held)) return false;
-    std::vector<Interval> gradient;
-    values.Gradient({p.outputs[box.size() + guard.first]}, branches, {}, true, gradient);
-    Interval rate = Interval::Point(0);
-    for (size_t v = 0; v < gradient.size(); ++v) {
-      if (gradient[v] == Interval::Point(0)) continue;
-      if (v >= box.size()) return false;  // an input, which jumps
-      rate = rate + gradient[v] * values.Of(p.outputs[v], 0);
-    }
-    return rate.lo > 0;
   }
 
   Next Holds(const Stage& stage, const FlowSet& around, bool is_before) {
