@@ -48,7 +48,7 @@ std::vector<ContractResult> ContractsOf(Motion& motion, bool reduce, std::string
     } else {
       result.impossible = problem.error().message;
     }
-    if (reduce && problem.ok()) {
+    if (reduce && result.impossible.empty()) {
       if (auto reduced = robot::WithoutPlace(world, body, instance, motion.declarations->evaluator(), keep)) {
         result.anywhere = std::move(reduced->parameters);
         result.at_zero = std::move(reduced->anywhere);

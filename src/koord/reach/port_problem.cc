@@ -10,7 +10,6 @@
 
 namespace rondo::koord {
 
-using expr::Rational;
 using expr::Substitution;
 
 namespace {
@@ -24,7 +23,6 @@ class Builder {
         world_(world),
         body_(body),
         arena_(arena),
-        diagnostics_(diagnostics),
         loose_(loose),
         vocabulary_(arena, model, std::nullopt),
         executor_(vocabulary_, diagnostics) {}
@@ -189,7 +187,6 @@ class Builder {
   const robot::World& world_;
   const robot::Body& body_;
   expr::Arena& arena_;
-  diag::Diagnostics& diagnostics_;
   const robot::Loose* loose_;
   Vocabulary vocabulary_;
   Executor executor_;

@@ -36,7 +36,7 @@ class Equations {
   bool Insert(Row row) {
     for (const auto& [pivot, known] : rows_) {
       const auto it = row.find(pivot);
-      if (it != row.end()) Subtract(row, known, it->second);
+      if (it != row.end()) Subtract(row, known, Rational(it->second));
     }
     if (row.empty()) return true;
     if (row.rbegin()->first == 0) return false;  // 1 = 0
@@ -61,7 +61,8 @@ class Equations {
   }
 
  private:
-  static void Subtract(Row& row, const Row& other, Rational factor) {
+  // `factor`: of no row, which may change.
+  static void Subtract(Row& row, const Row& other, const Rational& factor) {
     for (const auto& [unknown, c] : other) AddTo(row, unknown, Rational(0) - factor * c);
   }
 
@@ -151,7 +152,7 @@ class Finder {
     Equations::AddTo(rows[std::move(m)], unknown, c);
   }
 
-  void InsertAll(Rows rows) {
+  void InsertAll(Rows&& rows) {
     for (auto& [monomial, row] : rows) {
       if (!row.empty()) Insert(std::move(row));
     }
