@@ -29,7 +29,7 @@ bool IsProved(const ContractResult& r, const solve::cache::ProofCache& cache) {
 std::map<const choreo::Graph*, std::set<std::string>> ProvedMotions(Motion& motion,
                                                                     const solve::cache::ProofCache& cache) {
   std::map<std::pair<const choreo::Graph*, std::string>, bool> all;
-  for (const ContractResult& r : ContractsOf(motion)) {
+  for (const ContractResult& r : ContractsOf(motion, false)) {  // arguments are constants: nothing to reduce
     const auto [it, fresh] = all.emplace(std::pair(r.graph, r.motion), true);
     it->second = it->second && IsProved(r, cache);
   }

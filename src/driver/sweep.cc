@@ -102,11 +102,7 @@ class Sweeper {
   // What is assumed at the start may relate other states to this one.
   static void Narrow(reach::Problem& problem) {
     interval::Box box = problem.initial;
-    auto formula = reach::Normalise(*problem.arena, problem.assume);
-    if (formula.ok()) {
-      const auto terms = reach::Compile(*problem.arena, problem.states, formula.value().terms);
-      if (terms.ok()) reach::Contract(*problem.arena, terms.value(), formula.value(), box);
-    }
+    (void)reach::Contract(*problem.arena, problem.assume, problem.states, box);
     const bool empty =
         std::ranges::any_of(box, [](const interval::Interval& side) { return side.IsEmpty(); });
     if (!empty) problem.initial = std::move(box);

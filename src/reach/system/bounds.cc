@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "expr/substitute.h"
+
 namespace rondo::reach {
 
 using expr::Op;
@@ -214,6 +216,27 @@ void Contract(const expr::Arena& arena, const Program& terms, const Formula& for
     return;
   }
   Shaver(terms, formula, box).Run();
+}
+
+std::optional<Line> LineIn(expr::Arena& arena, TermId term, TermId variable) {
+  const auto at = [&](int64_t value) {
+    return expr::Substitute(arena, term, {{variable, arena.Number(arena.Real(), Rational(value))}});
+  };
+  const TermId rest = at(0);
+  const TermId slope = arena.Sub(at(1), rest);
+  if (!arena.IsNumber(slope) || arena.number(slope).IsZero()) return std::nullopt;
+  const TermId line = arena.Add(arena.Mul(slope, variable), rest);
+  if (arena.Sub(term, line) != arena.Number(arena.Real(), Rational(0))) return std::nullopt;
+  return Line{arena.number(slope), rest};
+}
+
+bool Contract(expr::Arena& arena, TermId formula, const std::vector<TermId>& variables, interval::Box& box) {
+  const auto normal = Normalise(arena, formula);
+  if (!normal.ok()) return false;
+  const auto terms = Compile(arena, variables, normal.value().terms);
+  if (!terms.ok()) return false;
+  Contract(arena, terms.value(), normal.value(), box);
+  return true;
 }
 
 }  // namespace rondo::reach

@@ -18,10 +18,19 @@ std::vector<TermId> Necessary(const Formula& formula);
 std::vector<std::optional<Rational>> Pinned(const expr::Arena& arena, const Program& terms,
                                             const Formula& formula);
 
+/// The term as `slope * variable + rest`, if it is that with a number that is not zero and a rest without it.
+struct Line {
+  Rational slope;
+  TermId rest;
+};
+std::optional<Line> LineIn(expr::Arena& arena, TermId term, TermId variable);
+
 /// Shrinks the box to an enclosure of the points in it at which the formula holds: exactly where it bounds a
 /// variable by a number, else by cutting off slabs in which it fails. Sides may be unbounded before and
 /// after. The box becomes empty (one side is) if there is no such point. `terms`: the terms of the formula,
 /// over the variables of the box.
 void Contract(const expr::Arena& arena, const Program& terms, const Formula& formula, interval::Box& box);
+/// The same for a formula over these variables; false, and the box as it was, if it cannot be analysed.
+bool Contract(expr::Arena& arena, TermId formula, const std::vector<TermId>& variables, interval::Box& box);
 
 }  // namespace rondo::reach

@@ -27,24 +27,13 @@ class Reader {
   }
 
  private:
-  std::optional<Rational> At(TermId term, size_t state, int64_t value) {
-    const TermId number = arena_.Number(arena_.Real(), Rational(value));
-    const TermId result = expr::Substitute(arena_, term, {{p_.states[state], number}});
-    return arena_.IsNumber(result) ? std::optional(arena_.number(result)) : std::nullopt;
-  }
-
   // term <= 0, if it is linear in this state alone.
   void Read(TermId term, size_t state) {
-    const auto at0 = At(term, state, 0);
-    const auto at1 = At(term, state, 1);
-    if (!at0 || !at1) return;
-    const Rational slope = *at1 - *at0;
-    const auto number = [&](const Rational& value) { return arena_.Number(arena_.Real(), value); };
-    const TermId line = arena_.Add(arena_.Mul(number(slope), p_.states[state]), number(*at0));
-    if (slope == Rational(0) || arena_.Sub(term, line) != number(Rational(0))) return;
-    const Rational bound = Rational(0) - *at0 / slope;
+    const auto line = LineIn(arena_, term, p_.states[state]);
+    if (!line || !arena_.IsNumber(line->rest)) return;
+    const Rational bound = Rational(0) - arena_.number(line->rest) / line->slope;
     Sides& s = sides_[state];
-    if (slope > Rational(0)) {
+    if (line->slope > Rational(0)) {
       if (!s.most || bound < *s.most) s.most = bound;
     } else if (!s.least || bound > *s.least) {
       s.least = bound;

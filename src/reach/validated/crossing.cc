@@ -297,7 +297,7 @@ class Runner::Crossing {
   }
 
   // A box of a scaled stage, where the factor is one.
-  static interval::Box Unscaled(interval::Box box) {
+  static interval::Box AtOne(interval::Box box) {
     box.push_back(Interval::Point(1));
     return box;
   }
@@ -319,7 +319,7 @@ class Runner::Crossing {
     const Interval time{-2 * late, 2 * late};
     bool inside = false;
     for (int attempt = 0; attempt < 20 && !inside; ++attempt) {
-      const interval::Box all = Unscaled(box);
+      const interval::Box all = AtOne(box);
       if (!RatesOn(before, all, rates) || !RatesOn(after, all, jumps)) return Next::kNo;
       inside = true;
       for (size_t i = 0; i < n; ++i) {
@@ -336,7 +336,7 @@ class Runner::Crossing {
     }
     if (!inside) return Next::kNo;
     for (const Guard& g : after.guards) {
-      if (Returns(g) && !RisesOn(after, Unscaled(box), g)) return Next::kNo;
+      if (Returns(g) && !RisesOn(after, AtOne(box), g)) return Next::kNo;
     }
     // What holds meanwhile.
     FlowSet around = there;

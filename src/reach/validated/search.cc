@@ -23,26 +23,21 @@ double SizeOf(const std::vector<double>& state) {
 // Points at random satisfy no equation, such as `x == x0`. Of several states in one, the first is determined.
 void Search::FindEquations() {
   expr::Arena& arena = *problem_.arena;
-  const std::vector<TermId> terms = Necessary(stages_.assumed());
-  for (const TermId term : terms) {
-    if (std::ranges::find(terms, arena.Neg(term)) == terms.end()) continue;
-    const auto free = [&](size_t i) {
-      return !problem_.initial[i].IsPoint() && !(i < problem_.copy_of.size() && problem_.copy_of[i]) &&
-             std::ranges::none_of(equations_, [&](const Equation& e) { return e.state == i; });
-    };
+  std::vector<TermId> terms = Necessary(stages_.assumed());
+  while (!terms.empty()) {
+    const TermId term = terms.back();
+    terms.pop_back();
+    // term <= 0 and -term <= 0, once.
+    if (std::erase(terms, arena.Neg(term)) == 0) continue;
     for (size_t i = 0; i < problem_.states.size(); ++i) {
-      if (!free(i)) continue;
-      // Linear in this state, with a number as its factor?
-      const auto at = [&](int64_t value) {
-        return expr::Substitute(arena, term,
-                                {{problem_.states[i], arena.Number(arena.Real(), Rational(value))}});
-      };
-      const TermId slope = arena.Sub(at(1), at(0));
-      if (!arena.IsNumber(slope) || arena.number(slope).IsZero()) continue;
-      const TermId line = arena.Add(arena.Mul(slope, problem_.states[i]), at(0));
-      if (arena.Sub(term, line) != arena.Number(arena.Real(), Rational(0))) continue;
-      equations_.push_back(
-          {i, arena.Mul(arena.Number(arena.Real(), Rational(-1) / arena.number(slope)), at(0))});
+      const bool copy = i < problem_.copy_of.size() && problem_.copy_of[i];
+      if (copy || problem_.initial[i].IsPoint() ||
+          std::ranges::find(equations_, i, &Equation::state) != equations_.end())
+        continue;
+      const auto line = LineIn(arena, term, problem_.states[i]);
+      if (!line) continue;
+      const TermId factor = arena.Number(arena.Real(), Rational(-1) / line->slope);
+      equations_.push_back({i, arena.Mul(factor, line->rest)});
       break;
     }
   }

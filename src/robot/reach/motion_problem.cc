@@ -222,14 +222,9 @@ class Builder {
         variables.push_back(i.term);
         box.push_back(i.bounds);
       }
-      auto formula = reach::Normalise(arena_, motion_.contract.assume);
-      if (formula.ok()) {
-        auto terms_of = reach::Compile(arena_, variables, formula.value().terms);
-        if (terms_of.ok()) {
-          reach::Contract(arena_, terms_of.value(), formula.value(), box);
-          for (size_t i = 0; i < p.inputs.size(); ++i) p.inputs[i].bounds = box[p.states.size() + i];
-          out_.assumed.emplace_back("what the contract assumes of its surroundings");
-        }
+      if (reach::Contract(arena_, motion_.contract.assume, variables, box)) {
+        for (size_t i = 0; i < p.inputs.size(); ++i) p.inputs[i].bounds = box[p.states.size() + i];
+        out_.assumed.emplace_back("what the contract assumes of its surroundings");
       }
     }
     for (const reach::Input& i : p.inputs) {

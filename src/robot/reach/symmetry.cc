@@ -164,11 +164,7 @@ class Reducer {
       const auto most = ConstantRange(arena_, u->most);
       if (least && most) box[i] = interval::Hull(*least, *most);
     }
-    auto formula_of = reach::Normalise(arena_, formula);
-    if (!formula_of.ok()) return false;
-    const auto terms = reach::Compile(arena_, variables, formula_of.value().terms);
-    if (!terms.ok()) return false;
-    reach::Contract(arena_, terms.value(), formula_of.value(), box);
+    if (!reach::Contract(arena_, formula, variables, box)) return false;
     return std::ranges::all_of(body_.states, [&](const Variable& v) {
       if (!moved_.contains(v.term)) return true;
       const auto least = ConstantRange(arena_, v.least);
