@@ -97,6 +97,7 @@ enum class Kind : uint8_t {
   kKoordArity,
   kKoordNotCallable,
   kKoordNotIndexable,
+  kKoordArrayLength,
   kKoordUnknownSignature,
   kKoordStreamMisuse,
   // Koord: who may read and write what.

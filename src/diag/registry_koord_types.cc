@@ -27,6 +27,11 @@ constexpr KindInfo kTable[] = {
      "an index on what is no list or array",
      "Only lists, arrays and `allread` variables can be indexed. A record has members: `p.x`.",
      "local:\n    int n\n    int m\nStep:\n    eff:\n        m = n[0]\n", "check"},
+    {Kind::kKoordArrayLength, "koord-array-length", Severity::kError, "a length that no array can have",
+     "An array has a fixed number of items, at least one: a number, `N_sys`, a parameter, or a sum, difference or "
+     "product\n"
+     "of these.",
+     "local:\n    int a[0]\nStep:\n    eff:\n        stop\n", "check"},
     {Kind::kKoordUnknownSignature, "koord-unknown-signature", Severity::kError,
      "a function whose types cannot be told",
      "The types of an external function are inferred from its uses. Where they do not suffice, declare it:\n"

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
+
+#include "expr/rational.h"
 
 namespace rondo::lang {
 namespace {
@@ -258,7 +261,18 @@ class Lexer {
                           "not a number, and a name cannot start with a digit");
       return Emit(TokenKind::kInt, begin, at_, "0");
     }
+    if (is_float && !IsExact(text_.substr(begin, at_ - begin))) {
+      diagnostics_.Report(Kind::kSyntaxNumber, Range(begin, at_), "this number is too large or too small to be read")
+          .Help("zero, and sizes from 2.3e-308 to 1.7e308, can be read");
+      return Emit(TokenKind::kFloat, begin, at_, "0.0");
+    }
     Emit(is_float ? TokenKind::kFloat : TokenKind::kInt, begin, at_);
+  }
+
+  // Proofs have the number itself and robots a double near it: one that is neither zero nor infinite.
+  static bool IsExact(std::string_view text) {
+    const auto number = expr::Rational::Parse(text);
+    return number && (number->IsZero() || std::isnormal(number->ToDouble()));
   }
 
   void ReadString(char quote) {

@@ -23,7 +23,9 @@ TypeId TypeTable::Add(Type type) {
   return TypeId(types_.size() - 1);
 }
 
-TypeId TypeTable::Array(TypeId element) { return Add({TypeKind::kArray, "", {}, {element}}); }
+TypeId TypeTable::Array(TypeId element, std::string length) {
+  return Add({TypeKind::kArray, "", {}, {element}, std::move(length)});
+}
 TypeId TypeTable::List(TypeId element) { return Add({TypeKind::kList, "", {}, {element}}); }
 TypeId TypeTable::Tuple(std::vector<TypeId> parts) {
   static const std::vector<std::string> kNames = {"first", "second", "third", "fourth", "fifth", "sixth"};
@@ -85,7 +87,8 @@ bool TypeTable::Unify(TypeId a, TypeId b) {
     bound_[variable.index()] = other;
     return true;
   }
-  if (x.kind != y.kind || x.name != y.name || x.parts.size() != y.parts.size()) return false;
+  if (x.kind != y.kind || x.name != y.name || x.parts.size() != y.parts.size() || x.length != y.length)
+    return false;
   if (x.kind == TypeKind::kRecord) return true;  // same name, same record
   const std::vector<TypeId> left = x.parts;
   const std::vector<TypeId> right = y.parts;
@@ -103,8 +106,14 @@ bool TypeTable::Coerce(TypeId from, TypeId to) {
 std::string TypeTable::Name(TypeId type) const {
   const Type& t = (*this)[type];
   switch (t.kind) {
-    case TypeKind::kArray:
-      return Name(t.parts[0]) + "[...]";
+    case TypeKind::kArray: {
+      // The outer length first, as in declarations.
+      std::string lengths;
+      TypeId element = type;
+      for (; Is(element, TypeKind::kArray); element = (*this)[element].parts[0])
+        lengths += fmt::format("[{}]", (*this)[element].length);
+      return Name(element) + lengths;
+    }
     case TypeKind::kList:
       return fmt::format("List<{}>", Name(t.parts[0]));
     case TypeKind::kVariable:

@@ -20,7 +20,7 @@ enum class TypeKind : uint8_t {
   kRecord,  ///< parts: field types
   kTuple,   ///< parts; fields are called first, second, ...
   kEnum,
-  kArray,   ///< parts: element; fixed length
+  kArray,   ///< parts: element; `length` says how many
   kList,    ///< parts: element
   kOpaque,  ///< only functions look inside
 };
@@ -30,9 +30,10 @@ struct Type {
   std::string name;                 ///< of records, enumerations and opaque types
   std::vector<std::string> fields;  ///< fields of a record, members of an enumeration
   std::vector<TypeId> parts;
+  std::string length{};  ///< of an array: the expression, as written; equal lengths are equal texts
 };
 
-/// The types of one program..
+/// The types of one program.
 class TypeTable {
  public:
   TypeTable();
@@ -44,7 +45,7 @@ class TypeTable {
   TypeId string() const { return TypeId(4); }
   TypeId stream() const { return TypeId(5); }
   TypeId pos() const { return TypeId(6); }  ///< record of real x, y, z: metres
-  TypeId Array(TypeId element);
+  TypeId Array(TypeId element, std::string length);
   TypeId List(TypeId element);
   TypeId Tuple(std::vector<TypeId> parts);
   TypeId Record(std::string name, std::vector<std::string> fields, std::vector<TypeId> parts);

@@ -183,7 +183,7 @@ class Run {
 
   bool Start() {
     const size_t before = diagnostics_.errors();
-    state_.assign(team_->layout().words(), 0);
+    state_ = team_->blank();
     Sense();
     koord::semantics::Machine& machine = team_->machine();
     machine.SetMemory(state_.data());

@@ -20,6 +20,7 @@ struct Universal {
   TermId body;
   std::string group;
   std::map<TermId, std::vector<VariablePlace>> places;
+  std::map<TermId, std::vector<TermId>> equal;
   /// Variables whose values come from triggers, and those triggers.
   std::vector<TermId> matched;
   std::vector<std::vector<TermId>> triggers;
@@ -29,8 +30,8 @@ struct Universal {
 class Engine {
  public:
   Engine(Arena& arena, const std::map<expr::SortId, std::vector<TermId>>& fallback,
-         const InstantiationLimits& limits)
-      : arena_(arena), fallback_(fallback), limits_(limits), index_(arena) {}
+         const InstantiationLimits& limits, Witnesses& witnesses)
+      : arena_(arena), fallback_(fallback), limits_(limits), witnesses_(witnesses), index_(arena) {}
 
   Ground Run(const std::vector<Assertion>& assertions) {
     for (const Assertion& assertion : assertions) Assert(assertion.formula, assertion.group);
@@ -67,8 +68,9 @@ class Engine {
 
   void AddUniversal(TermId forall, const std::string& group) {
     const auto args = arena_.args(forall);
-    Universal u{{args.begin(), args.end() - 1}, args.back(), group, {}, {}, {}, {}};
+    Universal u{{args.begin(), args.end() - 1}, args.back(), group, {}, {}, {}, {}, {}};
     u.places = PlacesOf(arena_, u.body, u.variables);
+    u.equal = EqualTerms(arena_, u.body, u.variables);
     if (limits_.mode == InstantiationMode::kTriggers) {
       for (const TermId v : u.variables) {
         if (arena_.sort_of(v) != arena_.Int()) u.matched.push_back(v);
@@ -117,13 +119,14 @@ class Engine {
   // One body for each quantifier, whichever polarity asks first: `exists x. p` holds of the Skolem constants
   // if it holds of anything, and `not forall x. p` is `exists x. not p`.
   TermId Skolemize(TermId quantifier) {
+    if (const auto it = witnesses_.find(quantifier); it != witnesses_.end()) return it->second;
     const std::vector<TermId> args(arena_.args(quantifier).begin(), arena_.args(quantifier).end());
     expr::Substitution map;
     for (size_t i = 0; i + 1 < args.size(); ++i) {
       const std::string name = arena_.symbol(arena_.symbol_of(args[i])).name;
       map[args[i]] = arena_.FreshConstant(name, arena_.sort_of(args[i]));
     }
-    return Substitute(arena_, args.back(), map);
+    return witnesses_[quantifier] = Substitute(arena_, args.back(), map);
   }
 
   // A Boolean constant that implies the quantifier (positive), is implied by it (negative), or both.
@@ -171,6 +174,11 @@ class Engine {
               where.offset.IsZero() ? t : arena_.Sub(t, arena_.Number(arena_.sort_of(t), where.offset));
           if (seen.insert(candidate).second) result.push_back(candidate);
         }
+      }
+    }
+    if (const auto equal = u.equal.find(variable); equal != u.equal.end()) {
+      for (const TermId t : equal->second) {
+        if (seen.insert(t).second) result.push_back(t);
       }
     }
     if (result.empty()) {
@@ -224,6 +232,7 @@ class Engine {
   Arena& arena_;
   const std::map<expr::SortId, std::vector<TermId>>& fallback_;
   const InstantiationLimits& limits_;
+  Witnesses& witnesses_;
   PlaceIndex index_;
   size_t indexed_ = 0;
   size_t made_ = 0;
@@ -237,8 +246,15 @@ class Engine {
 
 Ground Instantiate(Arena& arena, const std::vector<Assertion>& assertions,
                    const std::map<expr::SortId, std::vector<TermId>>& fallback,
+                   const InstantiationLimits& limits, Witnesses& witnesses) {
+  return Engine(arena, fallback, limits, witnesses).Run(assertions);
+}
+
+Ground Instantiate(Arena& arena, const std::vector<Assertion>& assertions,
+                   const std::map<expr::SortId, std::vector<TermId>>& fallback,
                    const InstantiationLimits& limits) {
-  return Engine(arena, fallback, limits).Run(assertions);
+  Witnesses witnesses;
+  return Instantiate(arena, assertions, fallback, limits, witnesses);
 }
 
 }  // namespace rondo::solve

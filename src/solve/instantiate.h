@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "solve/solver.h"
@@ -28,7 +29,7 @@ struct InstantiationLimits {
 /// - universal variables are replaced by the closed terms that stand where the variable stands: a variable
 /// that is an
 ///   argument of f, or an index of an array, takes every closed term that occurs at the same place of f or of
-///   that array. For formulas in which variables occur only in such places this loses nothing (Ge & de Moura,
+///   that array; a number that is compared with a closed term by equality takes that term. For formulas in which variables occur only in such places this loses nothing (Ge & de Moura,
 ///   Complete instantiation for quantified formulas, CAV 2009), up to `limits`;
 /// - a variable in no such place takes the `fallback` terms of its sort;
 /// - quantifiers under equality or if-then-else are named by a Boolean constant.
@@ -37,6 +38,14 @@ struct Ground {
   std::vector<Assertion> assertions;
   bool complete = true;
 };
+/// By existential quantifier, its body for the constants that stand for its variables.
+using Witnesses = std::unordered_map<expr::TermId, expr::TermId>;
+
+/// @param witnesses  constants of earlier calls, which are used again; new ones are added. Whoever states more
+///   about a question can then speak of the constants of the first attempt.
+Ground Instantiate(expr::Arena& arena, const std::vector<Assertion>& assertions,
+                   const std::map<expr::SortId, std::vector<expr::TermId>>& fallback,
+                   const InstantiationLimits& limits, Witnesses& witnesses);
 Ground Instantiate(expr::Arena& arena, const std::vector<Assertion>& assertions,
                    const std::map<expr::SortId, std::vector<expr::TermId>>& fallback,
                    const InstantiationLimits& limits = {});

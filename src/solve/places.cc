@@ -116,4 +116,25 @@ std::map<TermId, std::vector<VariablePlace>> PlacesOf(const Arena& arena, TermId
   return result;
 }
 
+std::map<TermId, std::vector<TermId>> EqualTerms(const Arena& arena, TermId body,
+                                                 const std::vector<TermId>& variables) {
+  std::map<TermId, std::vector<TermId>> result;
+  std::vector<TermId> equations;
+  std::unordered_set<TermId> seen;
+  expr::VisitPostorder(arena, body, seen, [&](TermId t) {
+    if (arena.op(t) == Op::kEq && arena.IsOpen(t)) equations.push_back(t);
+  });
+  for (const TermId equation : equations) {
+    for (size_t side = 0; side < 2; ++side) {
+      const TermId variable = arena.arg(equation, side);
+      const TermId value = arena.arg(equation, 1 - side);
+      if (arena.IsOpen(value) || std::find(variables.begin(), variables.end(), variable) == variables.end())
+        continue;
+      if (arena.sort_of(variable) == arena.Int() || arena.sort_of(variable) == arena.Real())
+        result[variable].push_back(value);
+    }
+  }
+  return result;
+}
+
 }  // namespace rondo::solve

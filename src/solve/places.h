@@ -40,6 +40,10 @@ struct VariablePlace {
   expr::Rational offset;
 };
 
+/// The closed terms that each of `variables`, of a sort of numbers, is compared with by equality in `body`.
+std::map<expr::TermId, std::vector<expr::TermId>> EqualTerms(const expr::Arena& arena, expr::TermId body,
+                                                             const std::vector<expr::TermId>& variables);
+
 /// The places of each of `variables` in `body`.
 std::map<expr::TermId, std::vector<VariablePlace>> PlacesOf(const expr::Arena& arena, expr::TermId body,
                                                             const std::vector<expr::TermId>& variables);

@@ -27,6 +27,8 @@ class Checker {
   TypeId TypeOf(const lang::TypeSyntax& syntax);
   TypeId TypeOf(const Decl& decl);
   TypeId WithDimensions(TypeId base, const std::vector<ExprId>& dimensions);
+  std::string LengthOf(ExprId length);
+  bool IsFixed(ExprId length) const;
   void CheckOrder();
 
   // names.cc

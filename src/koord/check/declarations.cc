@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "expr/rational.h"
 #include "koord/check/checker.h"
+#include "lang/expr_printer.h"
 #include "lang/suggest.h"
 
 namespace rondo::koord {
@@ -190,7 +192,7 @@ void Checker::DeclareModule(const ModuleDef& module) {
 void Checker::DeclareVariable(VariableKind kind, const std::string& module, const Decl& decl) {
   const std::string name = module.empty() ? decl.name : fmt::format("{}.{}", module, decl.name);
   if (!Claim(name, decl.span)) return;
-  Variable variable{kind, name, module, {}, decl.span, decl.initial, {}, -1};
+  Variable variable{kind, name, module, {}, decl.span, decl.initial, -1};
   Decl shape = decl;
   if (kind == VariableKind::kAllread) {
     // `T x[N_sys]`, `T[] x` and `T x` are one cell for each robot.
@@ -207,10 +209,6 @@ void Checker::DeclareVariable(VariableKind kind, const std::string& module, cons
     }
   } else {
     variable.type = TypeOf(shape);
-    if (!shape.dimensions.empty())
-      variable.length = shape.dimensions[0];
-    else if (!shape.type.dimensions.empty())
-      variable.length = shape.type.dimensions[0];
   }
   if (kind == VariableKind::kSensor && decl.type.name == "PathPlanner" && !claimed_.contains("PathPlanner")) {
     Function function{name, {}, {}, {}, nullptr, false, decl.span, static_cast<int>(model_.variables.size())};
@@ -244,10 +242,40 @@ TypeId Checker::WithDimensions(TypeId base, const std::vector<ExprId>& dimension
       type = model_.types.List(type);
       continue;
     }
-    NeedType(*it, model_.types.integer(), "the length of an array");
-    type = model_.types.Array(type);
+    type = model_.types.Array(type, LengthOf(*it));
   }
   return type;
+}
+
+// Made of numbers, parameters and the number of robots?
+bool Checker::IsFixed(ExprId id) const {
+  const lang::Expr& e = exprs_[id];
+  const Ref ref = model_.RefOf(id);
+  if (ref.kind == RefKind::kVariable) return model_.variables[ref.index].kind == VariableKind::kParam;
+  if (ref.kind == RefKind::kSystemSize || e.kind == lang::ExprKind::kInt || e.kind == lang::ExprKind::kError)
+    return true;
+  const bool arithmetic = e.kind == lang::ExprKind::kUnary ||
+                          (e.kind == lang::ExprKind::kBinary && (e.text == "+" || e.text == "-" || e.text == "*"));
+  return arithmetic && std::all_of(e.args.begin(), e.args.end(), [this](ExprId a) { return IsFixed(a); });
+}
+
+// Lengths are told apart by their text: a number, the number of robots, or an expression over parameters.
+std::string Checker::LengthOf(ExprId length) {
+  NeedType(length, model_.types.integer(), "the length of an array");
+  if (model_.RefOf(length).kind == RefKind::kSystemSize) return kRobotsLength;
+  std::string text = lang::PrintExpr(exprs_, length);
+  if (!IsFixed(length)) {
+    diagnostics_.Report(Kind::kKoordArrayLength, exprs_[length].span, "the length of an array never changes")
+        .Help("use numbers, parameters and `N_sys`, or a list");
+  }
+  if (const auto number = expr::Rational::Parse(text)) {
+    if (*number < expr::Rational(1))
+      diagnostics_.Report(Kind::kKoordArrayLength, exprs_[length].span, "an array has at least one item")
+          .Help("a list can be empty: `List<int>`");
+    text = number->ToString();
+  }
+  model_.lengths.emplace(text, length);
+  return text;
 }
 
 TypeId Checker::TypeOf(const lang::TypeSyntax& syntax) {

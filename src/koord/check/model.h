@@ -22,13 +22,15 @@ struct Variable {
   TypeId type;         ///< of one robot's cell for `allread`, else as declared
   diag::Span span;
   ExprId initial;
-  ExprId length;  ///< of an array
   /// A sensor that is called like a function, such as a planner: its result type; `type` is then of no use.
   int function = -1;
 
   bool PerRobot() const { return kind != VariableKind::kAllwrite && kind != VariableKind::kParam; }
   bool Shared() const { return kind == VariableKind::kAllread || kind == VariableKind::kAllwrite; }
 };
+
+/// The length of an array with one item for each robot.
+inline constexpr const char* kRobotsLength = "N_sys";
 
 /// A function of the program (with a body) or of the world (without: uninterpreted, constrained by summaries
 /// only).
@@ -103,6 +105,8 @@ struct Model {
   std::vector<Function> functions;
   std::vector<Binding> bindings;
   std::map<std::string, TypeId> named_types;
+  /// The lengths of arrays, by the text that is part of their types; without `kRobotsLength`.
+  std::map<std::string, ExprId> lengths;
   std::vector<const EventDef*> events;
   std::vector<const InitDef*> inits;
   std::vector<const AssumeDef*> assumptions;

@@ -87,7 +87,7 @@ TypeId Checker::ReadVariable(ExprId id, size_t variable, RefKind kind) {
         .Help("keep the value in a local variable as well");
   }
   if (v.kind == VariableKind::kAllread && kind == RefKind::kVariable) {
-    return model_.types.Array(v.type);
+    return model_.types.Array(v.type, kRobotsLength);
   }
   return v.type;
 }

@@ -26,7 +26,12 @@ bool RobotsStop(const Model& model) {
 
 std::string InvariantName(const Model& model, size_t i) {
   const InvariantDef& def = *model.invariants[i];
-  return def.name.empty() ? fmt::format("invariant{}", i + 1) : def.name;
+  if (!def.name.empty()) return def.name;
+  // Proofs tell invariants apart by name: never one that somebody has written.
+  std::string name = fmt::format("invariant{}", i + 1);
+  const bool taken = std::any_of(model.invariants.begin(), model.invariants.end(),
+                                 [&](const InvariantDef* other) { return other->name == name; });
+  return taken ? name + " (unnamed)" : name;
 }
 
 std::string AssumptionName(const Model& model, const AssumeDef& def) {

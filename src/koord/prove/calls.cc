@@ -52,18 +52,20 @@ TermId Executor::Inline(const lang::Expr& e, const Function& f) {
   }
   inner.broke = inner.continued = inner.ended = arena_.False();
   inner.result = missing;
-  Effect ignored;  // a specification has no definedness checks
+  Effect ignored;  // what a specification computes is nobody's effect
   Frame saved = frame_;
-  const std::vector<TermId> conditions = std::exchange(conditions_, {});
+  // In a program the path has them; values of specifications do not depend on them.
+  std::vector<TermId> conditions = conditions_;
+  if (InProgram()) conditions_.clear();
   frame_.bindings = std::move(bindings);
   frame_.bindings.insert(saved.bindings.begin(), saved.bindings.end());
-  frame_.in_specification = frame_.state == nullptr;
+  frame_.in_specification = frame_.in_specification || frame_.state == nullptr;
   frame_.state = &inner;
   if (frame_.effect == nullptr) frame_.effect = &ignored;
   Body(f.def->body);
   Check(CheckKind::kReturn, f.span, inner.ended);
   frame_ = std::move(saved);
-  conditions_ = conditions;
+  conditions_ = std::move(conditions);
   return inner.result;
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "base/check.h"
@@ -10,6 +11,23 @@ namespace rondo::koord {
 using expr::Rational;
 using lang::ExprKind;
 using lang::TypeKind;
+
+namespace {
+
+// Are all parts of the one conjunction parts of the other?
+bool Among(const expr::Arena& arena, TermId part, TermId whole) {
+  const auto parts = [&](TermId t) {
+    if (arena.op(t) != expr::Op::kAnd) return std::vector<TermId>{t};
+    return std::vector<TermId>(arena.args(t).begin(), arena.args(t).end());
+  };
+  const std::vector<TermId> known = parts(whole);
+  const std::vector<TermId> wanted = parts(part);
+  return std::all_of(wanted.begin(), wanted.end(), [&](TermId t) {
+    return std::find(known.begin(), known.end(), t) != known.end();
+  });
+}
+
+}  // namespace
 
 Executor::Executor(Vocabulary& vocabulary, diag::Diagnostics& diagnostics, ExecutionOptions options)
     : vocabulary_(vocabulary),
@@ -52,22 +70,23 @@ TermId Executor::Robot() {
 }
 
 TermId Executor::Reached() const {
-  if (frame_.state == nullptr) return arena_.True();
   std::vector<TermId> parts = conditions_;
-  parts.push_back(frame_.state->path);
-  parts.push_back(Live());
+  if (frame_.state != nullptr) {
+    parts.push_back(frame_.state->path);
+    parts.push_back(Live());
+  }
   return arena_.And(parts);
 }
 
 void Executor::Check(CheckKind kind, diag::Span span, TermId holds) {
-  if (frame_.effect == nullptr || holds == arena_.True()) return;
   TermId reached = Reached();
+  if (holds == arena_.True() || Among(arena_, holds, reached)) return;
   // Below a quantifier the operation must be defined for each value of its variables.
   if (!quantified_.empty()) {
     holds = arena_.Forall(quantified_, arena_.Implies(reached, holds));
-    reached = arena_.And(frame_.state->path, Live());
+    if (arena_.IsOpen(reached)) reached = arena_.True();
   }
-  frame_.effect->checks.push_back({kind, span, reached, holds});
+  (InProgram() ? frame_.effect->checks : specification_checks_).push_back({kind, span, reached, holds});
 }
 
 TermId Executor::Under(TermId condition, ExprId e) {
@@ -104,7 +123,7 @@ TermId Executor::Eval(ExprId id) {
     case ExprKind::kInt:
       return arena_.Number(arena_.Int(), *Rational::Parse(e.text));
     case ExprKind::kFloat:
-      return arena_.Number(arena_.Real(), Rational::Parse(e.text).value_or(Rational(0)));
+      return arena_.Number(arena_.Real(), *Rational::Parse(e.text));
     case ExprKind::kString:
       vocabulary_.MarkTexts();
       return vocabulary_.StringLiteral(e.text);
@@ -181,8 +200,8 @@ TermId Executor::ReadVariable(size_t v) {
 }
 
 TermId Executor::ReadCell(size_t v, TermId robot, ExprId at) {
-  if (!InProgram()) return arena_.Select(frame_.view->value[v], robot);
   Check(CheckKind::kIndex, exprs_[at].span, vocabulary_.IsRobot(robot));
+  if (!InProgram()) return arena_.Select(frame_.view->value[v], robot);
   const TermId value = arena_.Select(frame_.state->value[v], robot);
   if (quantified_.empty()) frame_.effect->reads.push_back({v, robot, value, Reached()});
   return value;
@@ -191,17 +210,50 @@ TermId Executor::ReadCell(size_t v, TermId robot, ExprId at) {
 TermId Executor::Index(ExprId id, const lang::Expr& e) {
   const TermId base = Eval(e.args[0]);
   const TermId index = Eval(e.args[1]);
-  const TermId zero = arena_.IntNumber(0);
   if (model_.types.Is(model_.TypeOf(e.args[0]), TypeKind::kList)) {
-    Check(CheckKind::kIndex, exprs_[id].span,
-          arena_.And(arena_.Le(zero, index), arena_.Lt(index, arena_.Length(base))));
+    Check(CheckKind::kIndex, exprs_[id].span, InRange(index, arena_.Length(base)));
     return arena_.At(base, index);
   }
-  if (const auto length = LengthBound(e.args[0])) {
-    Check(CheckKind::kIndex, exprs_[id].span,
-          arena_.And(arena_.Le(zero, index), arena_.Lt(index, arena_.IntNumber(*length))));
-  }
+  Check(CheckKind::kIndex, exprs_[id].span, InRange(index, ArrayLength(model_.TypeOf(e.args[0]))));
   return arena_.Select(base, index);
+}
+
+TermId Executor::InRange(TermId index, TermId length) {
+  return arena_.And(arena_.Le(arena_.IntNumber(0), index), arena_.Lt(index, length));
+}
+
+// The length that its type states: a term over parameters and the number of robots.
+TermId Executor::ArrayLength(TypeId array) {
+  const std::string& length = model_.types[array].length;
+  if (length == kRobotsLength) return vocabulary_.robots();
+  return Eval(model_.lengths.at(length));
+}
+
+// Arrays are equal where they have items: what a model of theirs says of other indices does not count.
+TermId Executor::EqualValues(TermId a, TermId b, TypeId type) {
+  const lang::Type& t = model_.types[type];
+  if (t.kind == TypeKind::kRecord || t.kind == TypeKind::kTuple) {
+    const std::vector<TypeId> parts = t.parts;
+    std::vector<TermId> equal;
+    for (uint32_t i = 0; i < parts.size(); ++i)
+      equal.push_back(EqualValues(arena_.Field(a, i), arena_.Field(b, i), parts[i]));
+    return arena_.And(equal);
+  }
+  if (t.kind != TypeKind::kArray) return arena_.Eq(a, b);
+  const TypeId element = t.parts[0];
+  const TermId length = ArrayLength(type);
+  constexpr int64_t kSpelledOut = 64;
+  if (const auto count = ConstantInt(length); count && *count <= kSpelledOut) {
+    std::vector<TermId> equal;
+    for (int64_t i = 0; i < *count; ++i) {
+      const TermId index = arena_.IntNumber(i);
+      equal.push_back(EqualValues(arena_.Select(a, index), arena_.Select(b, index), element));
+    }
+    return arena_.And(equal);
+  }
+  const TermId k = arena_.FreshBound("k", arena_.Int());
+  const TermId same = EqualValues(arena_.Select(a, k), arena_.Select(b, k), element);
+  return arena_.Forall({k}, arena_.Implies(InRange(k, length), same));
 }
 
 TermId Executor::Unary(const lang::Expr& e) {
@@ -231,8 +283,13 @@ TermId Executor::Binary(const lang::Expr& e) {
   TermId b = EvalAs(e.args[1], model_.TypeOf(e.args[1]));
   a = As(a, arena_.sort_of(b));
   b = As(b, arena_.sort_of(a));
-  if (e.text == "==") return arena_.Eq(a, b);
-  if (e.text == "!=") return arena_.Not(arena_.Eq(a, b));
+  if (e.text == "==" || e.text == "!=") {
+    const TypeId type = model_.TypeOf(e.args[0]);
+    const TermId equal = arena_.sort_of(a) == arena_.sort_of(b) && !model_.types.IsNumeric(type)
+                             ? EqualValues(a, b, type)
+                             : arena_.Eq(a, b);
+    return e.text == "==" ? equal : arena_.Not(equal);
+  }
   if (e.text == "<") return arena_.Lt(a, b);
   if (e.text == "<=") return arena_.Le(a, b);
   if (e.text == ">") return arena_.Lt(b, a);

@@ -261,14 +261,12 @@ void Executor::LoopIn(const Stmt& stmt) {
 }
 
 std::optional<int64_t> Executor::LengthBound(ExprId list) {
+  const TypeId type = model_.TypeOf(list);
+  if (model_.types.Is(type, TypeKind::kArray)) return ConstantInt(ArrayLength(type));
   const Ref ref = model_.RefOf(list);
   if (ref.kind != RefKind::kVariable && ref.kind != RefKind::kCell) return std::nullopt;
   const Variable& variable = model_.variables[ref.index];
-  if (model_.types.Is(model_.TypeOf(list), TypeKind::kArray)) {
-    if (variable.kind == VariableKind::kAllread) return vocabulary_.fixed_robots();
-    return variable.length.valid() ? ConstantInt(Eval(variable.length)) : std::nullopt;
-  }
-  return ListBound(ref.index);
+  return variable.function < 0 ? ListBound(ref.index) : std::nullopt;
 }
 
 // Looks for `len(v) <= number` as a part of an invariant or assumption. Only a hint: CheckKind::kUnrolling
@@ -328,14 +326,16 @@ void Executor::Method(const Stmt& stmt) {
 void Executor::Assign(ExprId target, TermId value) {
   const lang::Expr& e = exprs_[target];
   const Ref ref = model_.RefOf(target);
-  if (ref.kind == RefKind::kVariable) return AssignRoot(ref.index, value, {});
-  if (ref.kind == RefKind::kCell) return AssignRoot(ref.index, value, frame_.robot);
+  if (ref.kind == RefKind::kVariable) return AssignRoot(ref.index, value, {}, {});
+  if (ref.kind == RefKind::kCell) return AssignRoot(ref.index, value, frame_.robot, {});
   if (ref.kind == RefKind::kBinding) {
     TermId& slot = frame_.bindings.at(ref.index);
     slot = arena_.Ite(arena_.And(Live(), frame_.state->path), value, slot);
     return;
   }
   const ExprId inner = e.args[0];
+  if (e.kind == ExprKind::kIndex && model_.types.Is(model_.TypeOf(inner), TypeKind::kArray))
+    return AssignCell(target, value);
   const TermId whole = Eval(inner);
   if (e.kind == ExprKind::kField) {
     std::vector<TermId> parts;
@@ -345,29 +345,56 @@ void Executor::Assign(ExprId target, TermId value) {
   }
   CHECK(e.kind == ExprKind::kIndex);
   const TermId index = Eval(e.args[1]);
-  if (model_.types.Is(model_.TypeOf(inner), TypeKind::kList)) {
-    Check(CheckKind::kIndex, e.span,
-          arena_.And(arena_.Le(arena_.IntNumber(0), index), arena_.Lt(index, arena_.Length(whole))));
-    return Assign(inner, arena_.Set(whole, index, value));
-  }
-  if (const auto length = LengthBound(inner)) {
-    Check(CheckKind::kIndex, e.span,
-          arena_.And(arena_.Le(arena_.IntNumber(0), index), arena_.Lt(index, arena_.IntNumber(*length))));
-  }
-  // A cell of a shared array has a last writer of its own.
-  if (const Ref root = model_.RefOf(inner); root.kind == RefKind::kVariable)
-    return AssignRoot(root.index, value, index);
-  Assign(inner, arena_.Store(whole, index, value));
+  Check(CheckKind::kIndex, e.span, InRange(index, arena_.Length(whole)));
+  Assign(inner, arena_.Set(whole, index, value));
 }
 
-// Rules SvarAssign and LvarAssign. `index` is valid when one cell of an array is written.
-void Executor::AssignRoot(size_t v, TermId value, TermId index) {
+// `a[i][j]` of a variable with arrays of arrays: the variable, and the indices from the outer one on.
+std::optional<size_t> Executor::SharedArrayOf(ExprId target, std::vector<ExprId>& indices) const {
+  while (exprs_[target].kind == ExprKind::kIndex && model_.RefOf(target).kind == RefKind::kNone &&
+         model_.types.Is(model_.TypeOf(exprs_[target].args[0]), TypeKind::kArray)) {
+    indices.insert(indices.begin(), exprs_[target].args[1]);
+    target = exprs_[target].args[0];
+  }
+  const Ref root = model_.RefOf(target);
+  return root.kind == RefKind::kVariable ? std::optional<size_t>(root.index) : std::nullopt;
+}
+
+// An item of an array. A cell of a shared variable, however deep, has a last writer of its own.
+void Executor::AssignCell(ExprId target, TermId value) {
+  const lang::Expr& e = exprs_[target];
+  std::vector<ExprId> places;
+  const std::optional<size_t> root = SharedArrayOf(target, places);
+  if (!root) {
+    const TermId whole = Eval(e.args[0]);
+    const TermId index = Eval(e.args[1]);
+    Check(CheckKind::kIndex, e.span, InRange(index, ArrayLength(model_.TypeOf(e.args[0]))));
+    return Assign(e.args[0], arena_.Store(whole, index, value));
+  }
+  TypeId type = model_.variables[*root].type;
+  std::vector<TermId> indices;
+  for (const ExprId place : places) {
+    indices.push_back(Eval(place));
+    Check(CheckKind::kIndex, e.span, InRange(indices.back(), ArrayLength(type)));
+    type = model_.types[type].parts[0];
+  }
+  AssignRoot(*root, value, {}, std::move(indices));
+}
+
+// Rules SvarAssign and LvarAssign. `robot`: of the cell of an `allread` variable. `indices`: of the part of an
+// array that is written.
+void Executor::AssignRoot(size_t v, TermId value, TermId robot, std::vector<TermId> indices) {
   State& state = *frame_.state;
   const Variable& variable = model_.variables[v];
   const TermId old = state.value[v];
-  TermId fresh = index.valid() ? arena_.Store(old, index, value) : value;
-  fresh = arena_.Ite(Live(), fresh, old);
-  if (variable.kind == VariableKind::kAllwrite) frame_.effect->writes.push_back({v, Reached(), index});
+  if (robot.valid()) indices.insert(indices.begin(), robot);
+  // From the inside out: store(a, i, store(a[i], j, value)).
+  const std::function<TermId(TermId, size_t)> stored = [&](TermId whole, size_t depth) {
+    if (depth == indices.size()) return value;
+    return arena_.Store(whole, indices[depth], stored(arena_.Select(whole, indices[depth]), depth + 1));
+  };
+  const TermId fresh = arena_.Ite(Live(), stored(old, 0), old);
+  if (variable.kind == VariableKind::kAllwrite) frame_.effect->writes.push_back({v, Reached(), indices});
   state.value[v] = fresh;
 }
 

@@ -2,7 +2,9 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "diag/diagnostic.h"
@@ -29,11 +31,11 @@ struct ReadRecord {
   TermId reached;
 };
 
-/// A write to a variable that every robot may write. `index` is invalid for a write of the whole.
+/// A write to a variable that every robot may write. No index: to the whole.
 struct SharedWrite {
   size_t variable;
   TermId condition;
-  TermId index;
+  std::vector<TermId> indices;  ///< of a cell, or of the part of an array that has all cells behind them
 };
 
 /// What one robot does when it executes an event, in terms of the values at the start of the round.
@@ -72,6 +74,9 @@ class Executor {
   bool expands_robots() const { return options_.expand_robots; }
   /// Did the last specification mention the robot?
   bool used_robot() const { return used_robot_; }
+  /// What must hold for the specifications evaluated since the last call to have values: each operation of
+  /// theirs is defined where it is reached.
+  std::vector<DefinednessCheck> TakeSpecificationChecks() { return std::exchange(specification_checks_, {}); }
 
  private:
   struct State {
@@ -134,12 +139,17 @@ class Executor {
   void LoopRange(const Stmt& stmt);
   void InLoop(const std::function<void()>& iterations);
   void Assign(ExprId target, TermId value);
-  void AssignRoot(size_t variable, TermId value, TermId index);
+  void AssignRoot(size_t variable, TermId value, TermId robot, std::vector<TermId> indices);
+  void AssignCell(ExprId target, TermId value);
+  std::optional<size_t> SharedArrayOf(ExprId target, std::vector<ExprId>& indices) const;
   void Method(const Stmt& stmt);
   State Merge(TermId condition, const State& then, const State& otherwise);
   TermId Live() const;
   /// The declared length of an array; of a list, a bound that an invariant or assumption states.
   std::optional<int64_t> LengthBound(ExprId list);
+  TermId ArrayLength(TypeId array);
+  TermId InRange(TermId index, TermId length);
+  TermId EqualValues(TermId a, TermId b, TypeId type);
   std::optional<int64_t> ListBound(size_t variable) const;
   std::optional<int64_t> ConstantInt(TermId term) const;
 
@@ -153,6 +163,7 @@ class Executor {
   std::vector<TermId> conditions_;  // of short-circuit operators around the expression in hand
   std::vector<TermId> quantified_;  // variables of quantifiers around it
   bool used_robot_ = false;
+  std::vector<DefinednessCheck> specification_checks_;
 };
 
 }  // namespace rondo::koord

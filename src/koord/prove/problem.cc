@@ -1,8 +1,11 @@
 #include "koord/prove/problem.h"
 
+#include <algorithm>
+
 #include "expr/lists.h"
 #include "expr/substitute.h"
 #include "koord/check/spec_labels.h"
+#include "koord/prove/distances.h"
 #include "solve/instantiate.h"
 
 namespace rondo::koord {
@@ -79,13 +82,13 @@ solve::Query Problem::Whole() const {
 }
 
 Problem Problems::Ground(std::vector<Assertion> assertions, std::vector<TermId> participants) {
-  // The background comes last: only now is it known which parts of the vocabulary are in use.
-  const bool dist = vocabulary_.uses_dist();
-  if (background_.empty() || dist != background_dist_) {
-    background_ = theory_.Background();
-    background_dist_ = vocabulary_.uses_dist();
-  }
+  // The background comes last: only now is it known which literals are in use.
+  if (background_.empty()) background_ = theory_.Background();
   Append(assertions, background_);
+  if (!options_.expand) {
+    if (!extremes_) extremes_.emplace(vocabulary_);
+    Append(assertions, extremes_->Axioms(assertions));
+  }
   Problem problem;
   problem.participants = std::move(participants);
   problem.assertions = std::move(assertions);
@@ -97,11 +100,20 @@ Problem Problems::Ground(std::vector<Assertion> assertions, std::vector<TermId> 
 void Problems::Instantiate(Problem& problem) {
   std::vector<TermId> fallback = problem.participants;
   fallback.push_back(robot_);
+  // There always is a first robot and a last one.
+  fallback.push_back(arena_.IntNumber(0));
+  fallback.push_back(arena_.Sub(vocabulary_.robots(), arena_.IntNumber(1)));
+  Distances distances(vocabulary_);
   for (int pass = 0; pass < 4; ++pass) {
-    solve::Ground ground = solve::Instantiate(arena_, problem.assertions, {{arena_.Int(), fallback}}, limits);
+    solve::Ground ground = 
+        solve::Instantiate(arena_, problem.assertions, {{arena_.Int(), fallback}}, limits, witnesses_);
     std::vector<TermId> formulas;
     for (const Assertion& a : ground.assertions) formulas.push_back(a.formula);
-    const std::vector<TermId> axioms = expr::ListAxioms(arena_, formulas, problem.lists);
+    std::vector<TermId> axioms = expr::ListAxioms(arena_, formulas, problem.lists);
+    if (vocabulary_.uses_dist()) {
+      const std::vector<TermId> more = distances.Axioms(formulas);
+      axioms.insert(axioms.end(), more.begin(), more.end());
+    }
     problem.query.arena = &arena_;
     problem.query.assertions = std::move(ground.assertions);
     problem.complete = ground.complete;
@@ -154,17 +166,62 @@ TermId Problems::Succeeds(const std::vector<TermId>& participants) {
   return arena_.And(facts);
 }
 
+// A goal that denies that somebody exists says nothing of a robot in particular. Those who may show the
+// contrary are the robots that existed before, those that participants read (`x[(w + 1) % N_sys]`), and last
+// writers: all whose state the instances mention become participants.
 Problem Problems::Step(size_t invariant, std::optional<size_t> action, bool reachable) {
   const TermId refuted = Refute(theory_.Invariant(invariant, round_.end()));
+  std::vector<TermId> others;
+  Problem problem = StepFor(refuted, others, action, reachable);
+  constexpr int kPasses = 2;
+  constexpr size_t kMostOthers = 8;
+  for (int pass = 0; pass < kPasses && arena_.HasQuantifier(refuted) && !options_.expand; ++pass) {
+    const size_t before = others.size();
+    for (const TermId robot : Witnesses(problem)) {
+      if (others.size() < kMostOthers) others.push_back(robot);
+    }
+    if (others.size() == before) break;
+    problem = StepFor(refuted, others, action, reachable);
+  }
+  return problem;
+}
+
+// Robots whose state occurs in the query and that are no participants.
+std::vector<TermId> Problems::Witnesses(const Problem& problem) {
+  std::unordered_set<TermId> arrays;
+  for (size_t v = 0; v < model_.variables.size(); ++v) {
+    if (!model_.variables[v].PerRobot() || model_.variables[v].function >= 0) continue;
+    arrays.insert(round_.start().value[v]);
+    arrays.insert(round_.end().value[v]);
+  }
+  std::vector<TermId> result;
+  std::unordered_set<TermId> seen;
+  const auto add = [&](const std::vector<TermId>& known, TermId robot) {
+    if (std::find(known.begin(), known.end(), robot) == known.end() &&
+        std::find(result.begin(), result.end(), robot) == result.end())
+      result.push_back(robot);
+  };
+  for (const Assertion& a : problem.query.assertions) {
+    expr::VisitPostorder(arena_, a.formula, seen, [&](TermId t) {
+      if (arena_.op(t) == expr::Op::kSelect && arrays.contains(arena_.arg(t, 0)) && !arena_.IsOpen(t))
+        add(problem.participants, arena_.arg(t, 1));
+    });
+  }
+  return result;
+}
+
+Problem Problems::StepFor(TermId refuted, const std::vector<TermId>& others, std::optional<size_t> action,
+                          bool reachable) {
   std::vector<Assertion> assertions{{refuted, ""}};
-  Append(assertions, round_.Relate(refuted, Everyone()));
+  Append(assertions, round_.Relate(refuted, Everyone(), others));
   const std::vector<TermId> participants = round_.participants();
   if (action) assertions.push_back({First(*action, participants), ""});
   if (options_.expand) assertions.push_back({Succeeds(participants), ""});
   for (const TermId r : participants) {
     std::vector<Assertion>& promises = promises_[r];
     if (promises.empty()) promises = theory_.PortPromises(round_, r);
-    Append(assertions, promises);
+    for (const Assertion& p : promises)
+      assertions.push_back({arena_.Implies(vocabulary_.IsRobot(r), p.formula), p.group});
   }
   Append(assertions, Everything(round_.start()));
   Append(assertions, theory_.PortFacts(round_.end()));
@@ -184,31 +241,82 @@ Problem Problems::Follows(size_t invariant, const std::vector<size_t>& premises)
   return Ground(std::move(assertions), Everyone());
 }
 
-const std::vector<DefinednessCheck>& Problems::ChecksOf(size_t action) {
-  return (init_ && action == 0 ? *init_ : round_).EffectOf(action, robot_).checks;
+std::vector<DefinednessCheck> Problems::ChecksAt(size_t place, TermId robot) {
+  if (place >= columns()) return ChecksOfPart(static_cast<Part>(place - columns()), robot);
+  return (init_ && place == 0 ? *init_ : round_).EffectOf(place, robot).checks;
+}
+
+std::vector<DefinednessCheck> Problems::ChecksOfPart(Part part, TermId robot) {
+  const View& view = round_.start();
+  executor_.TakeSpecificationChecks();
+  const auto evaluate = [&](ExprId e) {
+    if (e.valid()) executor_.Specification(e, view, robot, &view, {});
+  };
+  const auto evaluate_all = [&](auto wanted) {
+    for (const AssumeDef* def : model_.assumptions) {
+      if (wanted(*def)) evaluate(def->body);
+    }
+  };
+  switch (part) {
+    case Part::kInvariants:
+      for (const InvariantDef* def : model_.invariants) evaluate(def->body);
+      for (const AssumeDef* def : model_.assumptions) evaluate(def->when);
+      return executor_.TakeSpecificationChecks();
+    case Part::kPorts:
+      evaluate_all([](const AssumeDef& def) { return def.kind == AssumeKind::kPort; });
+      break;
+    case Part::kInitial:
+      evaluate_all([](const AssumeDef& def) { return def.kind == AssumeKind::kInitially; });
+      break;
+    case Part::kFacts:
+      theory_.Background();
+      break;
+  }
+  std::vector<DefinednessCheck> checks = executor_.TakeSpecificationChecks();
+  std::erase_if(checks, [](const DefinednessCheck& c) { return c.kind != CheckKind::kUnrolling; });
+  return checks;
+}
+
+std::string Problems::NameOf(size_t place) const {
+  if (place == 0) return "init";
+  if (place < round_.actions().size()) return round_.actions()[place];
+  switch (static_cast<Part>(place - round_.actions().size())) {
+    case Part::kInvariants:
+      return "specification";
+    case Part::kPorts:
+      return "controller assumptions";
+    case Part::kInitial:
+      return "initial assumptions";
+    case Part::kFacts:
+      return "facts and summaries";
+  }
+  return "";
 }
 
 // Action 0 is `init`: it runs from the declared values.
-Problem Problems::Defined(size_t action) {
+Problem Problems::Defined(size_t place) {
   std::vector<TermId> undefined;
-  for (const DefinednessCheck& check : ChecksOf(action))
+  for (const DefinednessCheck& check : ChecksOf(place))
     undefined.push_back(arena_.And(check.reached, Refute(check.holds)));
-  return Undefined(action, arena_.Or(undefined), robot_);
+  return Undefined(place, arena_.Or(undefined), robot_);
 }
 
-Problem Problems::DefinedAt(size_t action, size_t check, int64_t robot) {
-  const TermId r = arena_.IntNumber(robot);
-  const DefinednessCheck& c = (init_ && action == 0 ? *init_ : round_).EffectOf(action, r).checks[check];
-  return Undefined(action, arena_.And(c.reached, Refute(c.holds)), r);
+Problem Problems::DefinedAt(size_t place, const DefinednessCheck& check, TermId robot) {
+  return Undefined(place, arena_.And(check.reached, Refute(check.holds)), robot);
 }
 
-Problem Problems::Undefined(size_t action, TermId undefined, TermId robot) {
+Problem Problems::Undefined(size_t place, TermId undefined, TermId robot) {
   std::vector<Assertion> assertions{{undefined, ""}, {vocabulary_.IsRobot(robot), ""}};
-  if (action == 0) {
+  if (place == 0) {
     Append(assertions, theory_.DeclaredValues(init_->start()));
     Append(assertions, theory_.PortFacts(init_->start()));
-  } else {
+  } else if (place < columns() || place == specification(Part::kInvariants)) {
     Append(assertions, Everything(round_.start()));
+  } else if (place == specification(Part::kInitial)) {
+    Append(assertions, theory_.DeclaredValues(round_.start()));
+    Append(assertions, theory_.PortFacts(round_.start()));
+  } else if (place == specification(Part::kPorts)) {
+    Append(assertions, theory_.PortFacts(round_.start()));
   }
   return Ground(std::move(assertions), {});
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "koord/prove/extremes.h"
 #include "koord/prove/theory.h"
 #include "solve/instantiate.h"
 
@@ -44,11 +45,21 @@ class Problems {
   Problem Step(size_t invariant, std::optional<size_t> action, bool reachable);
   /// [Follows] at any moment, invariant i follows from the premises: invariants that hold at the same moment.
   Problem Follows(size_t invariant, const std::vector<size_t>& premises);
-  /// [Def] every operation of the action is defined whenever control reaches it.
-  Problem Defined(size_t action);
-  /// The same for one of its operations and one robot of a fixed team.
-  Problem DefinedAt(size_t action, size_t check, int64_t robot);
-  const std::vector<DefinednessCheck>& ChecksOf(size_t action);
+  /// [Def] every operation of the action, or of a part of the specification, is defined wherever it is reached.
+  Problem Defined(size_t place);
+  /// The same for one operation of one robot: one of `ChecksAt(place, robot)`.
+  Problem DefinedAt(size_t place, const DefinednessCheck& check, TermId robot);
+  /// The operations of `place`, an action or `specification(part)`, as `robot` runs it.
+  std::vector<DefinednessCheck> ChecksAt(size_t place, TermId robot);
+  std::vector<DefinednessCheck> ChecksOf(size_t place) { return ChecksAt(place, robot_); }
+  /// The parts of the specification, as places behind those of the actions. Of invariants and conditions of
+  /// promises every operation must have a value: a proof concludes from what they deny. Assumptions only claim
+  /// less where they have no value; of them the bounds of unrolled loops must hold.
+  enum class Part : uint8_t { kInvariants, kPorts, kInitial, kFacts };
+  static constexpr size_t kParts = 4;
+  size_t specification(Part part) const { return round_.actions().size() + static_cast<size_t>(part); }
+  /// What reports call an action or part of the specification.
+  std::string NameOf(size_t place) const;
 
   /// Satisfiable if for some arguments no result of function `f` satisfies its summaries.
   Problem ImpossibleSummary(size_t f);
@@ -78,10 +89,13 @@ class Problems {
   const std::vector<solve::Assertion>& Everything(const View& view);
   std::vector<TermId> Everyone();
   void Instantiate(Problem& problem);
+  Problem StepFor(TermId refuted, const std::vector<TermId>& others, std::optional<size_t> action, bool reachable);
+  std::vector<TermId> Witnesses(const Problem& problem);
   TermId Succeeds(const std::vector<TermId>& participants);
   TermId First(size_t action, const std::vector<TermId>& participants);
   TermId Refute(TermId goal);
-  Problem Undefined(size_t action, TermId undefined, TermId robot);
+  std::vector<DefinednessCheck> ChecksOfPart(Part part, TermId robot);
+  Problem Undefined(size_t place, TermId undefined, TermId robot);
   Problem Ground(std::vector<solve::Assertion> assertions, std::vector<TermId> participants);
 
   expr::Arena& arena_;
@@ -96,7 +110,8 @@ class Problems {
   std::map<TermId, std::vector<solve::Assertion>> everything_;  // by the array `stopped` of the view
   std::map<TermId, std::vector<solve::Assertion>> promises_;    // by robot
   std::vector<solve::Assertion> background_;
-  bool background_dist_ = false;  // does the background speak of `dist`?
+  std::optional<Extremes> extremes_;
+  solve::Witnesses witnesses_;
 };
 
 }  // namespace rondo::koord

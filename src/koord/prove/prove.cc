@@ -197,8 +197,8 @@ class Prover {
         .Help("one of the solvers is wrong: `--smt-out DIR` writes the question");
   }
 
-  static Cell MakeCell(const Task& task, std::string column) {
-    Cell cell{std::move(column), Outcome::kUnknown, {}, {}, task.seconds};
+  static Cell MakeCell(const Task& task, std::string column, std::optional<size_t> action) {
+    Cell cell{std::move(column), action, Outcome::kUnknown, {}, {}, task.seconds};
     if (const auto* unsat = std::get_if<solve::Unsat>(&task.answer)) {
       cell.outcome = Outcome::kProved;
       cell.core = unsat->core;
@@ -217,14 +217,14 @@ class Prover {
     Row defined{"well-defined", {}, {}, {}, {}};
     for (const Task& task : tasks_) {
       if (task.kind == TaskKind::kInitially)
-        report_.rows[task.subject].cells.push_back(MakeCell(task, "initially"));
+        report_.rows[task.subject].cells.push_back(MakeCell(task, "initially", std::nullopt));
       if (task.kind == TaskKind::kStep)
-        report_.rows[task.subject].cells.push_back(MakeCell(task, actions[task.action]));
+        report_.rows[task.subject].cells.push_back(MakeCell(task, actions[task.action], task.action));
       if (task.kind == TaskKind::kDefined)
-        defined.cells.push_back(MakeCell(task, task.action == 0 ? "init" : actions[task.action]));
+        defined.cells.push_back(MakeCell(task, problems.NameOf(task.action), task.action));
       if (task.kind != TaskKind::kRound) continue;
       for (const size_t a : Columns(problems)) {
-        report_.rows[task.subject].cells.push_back(MakeCell(task, actions[a]));
+        report_.rows[task.subject].cells.push_back(MakeCell(task, actions[a], a));
         report_.rows[task.subject].cells.back().seconds /= static_cast<double>(actions.size());
       }
     }
@@ -233,7 +233,6 @@ class Prover {
 
   void Sanity(Task& task, Problems& problems, Reporter& reporter) {
     const auto* unsat = std::get_if<solve::Unsat>(&task.answer);
-    const std::string& action = problems.round().actions()[task.action];
     switch (task.kind) {
       case TaskKind::kInitially:
       case TaskKind::kRound:
@@ -258,7 +257,7 @@ class Prover {
         return;
       case TaskKind::kSomeValues:
         if (unsat != nullptr)
-          reporter.Contradiction(fmt::format("what `{}` computes cannot exist", action), unsat->core);
+          reporter.Contradiction(fmt::format("what `{}` computes cannot exist", problems.NameOf(task.action)), unsat->core);
         return;
       case TaskKind::kSomeEnabled:
         if (unsat != nullptr) never_.emplace_back(task.action, unsat->core);

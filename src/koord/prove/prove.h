@@ -32,7 +32,8 @@ enum class Outcome : uint8_t { kProved, kFailed, kUnknown };
 
 /// One obligation and what became of it.
 struct Cell {
-  std::string column;  ///< `initially`, an event, or `skip`
+  std::string column;            ///< `initially`, an event, `skip`, `init`, or a part of the specification
+  std::optional<size_t> action;  ///< what is taken first, as `Problems` counts; none: initially
   Outcome outcome = Outcome::kUnknown;
   std::string reason;             ///< why unknown
   std::vector<std::string> core;  ///< assumptions and invariants that the proof used

@@ -98,11 +98,6 @@ void Reporter::Unrealisable(size_t p) {
   }
 }
 
-size_t Reporter::ActionOf(const std::string& column) const {
-  const std::vector<std::string>& actions = problems_.round().actions();
-  return static_cast<size_t>(std::find(actions.begin(), actions.end(), column) - actions.begin());
-}
-
 std::string Reporter::Scope() const {
   return options_.robots ? fmt::format("for N = {}", *options_.robots) : "for every N";
 }
@@ -117,7 +112,7 @@ void Reporter::Failures() {
     if (i < model_.invariants.size()) {
       FailedInvariant(i);
     } else {
-      FailedDefinedness(*open, open->column == "init" ? 0 : ActionOf(open->column));
+      FailedDefinedness(*open, *open->action);
     }
   }
 }
@@ -132,7 +127,7 @@ void Reporter::FailedInvariant(size_t i) {
     if (cell.outcome == Outcome::kProved) continue;
     const bool this_one =
         confirmed &&
-        cell.column == (it->second.action ? problems_.round().actions()[*it->second.action] : "initially");
+        cell.action == it->second.action;
     cell.outcome = this_one ? Outcome::kFailed : Outcome::kUnknown;
     if (!this_one && cell.reason.empty()) cell.reason = "a possible counterexample could not be confirmed";
   }
@@ -206,31 +201,30 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
   }
 }
 
-void Reporter::FailedDefinedness(Cell& cell, size_t action) {
+void Reporter::FailedDefinedness(Cell& cell, size_t place) {
   Row& row = report_.rows.back();
   // Which operation: ask for each alone, with a team small enough to be sure.
   for (int64_t n = options_.robots.value_or(1); n <= options_.robots.value_or(4) && n <= 8; ++n) {
     expr::Arena arena;
     diag::Diagnostics ignored;
     Problems small(arena, model_, {n, true}, ignored);
-    // Not those of the symbolic team: with fixed N_sys some of them are trivially true and left out.
-    const std::vector<DefinednessCheck> checks = small.ChecksOf(action);
-    for (size_t c = 0; c < checks.size(); ++c) {
-      for (int64_t r = 0; r < n; ++r) {
-        const solve::Query query = small.DefinedAt(action, c, r).Whole();
+    for (int64_t r = 0; r < n; ++r) {
+      const TermId robot = arena.IntNumber(r);
+      for (const DefinednessCheck& check : small.ChecksAt(place, robot)) {
+        const solve::Query query = small.DefinedAt(place, check, robot).Whole();
         const solve::Budget budget{std::min(options_.timeout, std::chrono::milliseconds(2000)), false};
         if (!std::holds_alternative<solve::Sat>(options_.solver->Check(query, budget, options_.stop)))
           continue;
         row.verdict = Verdict::kNotInductive;
         cell.outcome = Outcome::kFailed;
-        diagnostics_.Report(Kind::kKoordUndefinedOperation, checks[c].span, Describe(checks[c].kind))
+        diagnostics_.Report(Kind::kKoordUndefinedOperation, check.span, Describe(check.kind))
             .Under(fmt::format("for robot {} of {}, in a state that satisfies every invariant", r, n))
             .Help("guard the operation, or add an invariant that excludes the state");
         return;
       }
     }
   }
-  Undecided(row, cell, problems_.ChecksOf(action).front().span, nullptr);
+  Undecided(row, cell, problems_.ChecksOf(place).front().span, nullptr);
 }
 
 void Reporter::Undecided(Row& row, const Cell& cell, Span span, const Witness* candidate) {

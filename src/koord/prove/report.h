@@ -31,10 +31,9 @@ class Reporter {
  private:
   void FailedInvariant(size_t i);
   void Told(Row& row, const InvariantDef& def, const Witness& witness);
-  void FailedDefinedness(Cell& cell, size_t action);
+  void FailedDefinedness(Cell& cell, size_t place);
   void Undecided(Row& row, const Cell& cell, diag::Span span, const Witness* candidate);
   diag::Span SpanOf(const std::string& assumption) const;
-  size_t ActionOf(const std::string& column) const;
   std::string Scope() const;
 
   const Model& model_;

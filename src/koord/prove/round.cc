@@ -32,9 +32,11 @@ Round::Round(Vocabulary& vocabulary, Executor& executor, Kind kind)
       effects_.push_back(executor.Run(*event, start_, self_));
     }
   }
-  action_sort_ = arena_.Enum(init ? "init action" : "action", actions_);
-  act_ = arena_.Declare(init ? "acts initially" : "acts", {arena_.Int()}, action_sort_);
-  turn_ = arena_.Declare("turn", {arena_.Int()}, arena_.Int());
+  std::vector<std::string> members;  // an event may be called `skip`
+  for (const std::string& action : actions_) members.push_back((members.empty() ? "no event " : "event ") + action);
+  action_sort_ = arena_.Enum(init ? "action at the start" : "action of a round", std::move(members));
+  act_ = arena_.Declare(init ? "acts at the start" : "acts in a round", {arena_.Int()}, action_sort_);
+  turn_ = arena_.Declare("place in the interleaving", {arena_.Int()}, arena_.Int());
 }
 
 TermId Round::Acts(TermId robot, size_t action) {
@@ -52,8 +54,10 @@ const Effect& Round::EffectOf(size_t action, TermId robot) {
   effect.locks = at(general.locks);
   effect.stops = at(general.stops);
   for (const TermId v : general.value) effect.value.push_back(at(v));
-  for (const SharedWrite& w : general.writes)
-    effect.writes.push_back({w.variable, at(w.condition), at(w.index)});
+  for (const SharedWrite& w : general.writes) {
+    effect.writes.push_back({w.variable, at(w.condition), {}});
+    for (const TermId index : w.indices) effect.writes.back().indices.push_back(at(index));
+  }
   for (const DefinednessCheck& c : general.checks)
     effect.checks.push_back({c.kind, c.span, at(c.reached), at(c.holds)});
   for (const ReadRecord& r : general.reads)
@@ -69,28 +73,45 @@ void Round::Participate(TermId robot) {
 // Which robots' cells, which shared variables does the goal read at the end?
 void Round::FindReads(TermId goal) {
   std::unordered_set<TermId> seen;
-  const auto last_writer = [&](size_t variable, TermId cell) {
-    const bool known = std::any_of(writers_.begin(), writers_.end(), [&](const LastWriter& w) {
-      return w.variable == variable && w.cell == cell;
-    });
-    if (known) return;
-    const TermId robot =
-        arena_.FreshConstant("last writer of " + model_.variables[variable].name, arena_.Int());
-    writers_.push_back({variable, cell, robot});
-    Participate(robot);
-  };
   expr::VisitPostorder(arena_, goal, seen, [&](TermId t) {
     for (size_t v = 0; v < model_.variables.size(); ++v) {
       const Variable& variable = model_.variables[v];
-      const bool array =
-          variable.kind == VariableKind::kAllwrite && model_.types.Is(variable.type, lang::TypeKind::kArray);
       const bool selects =
           arena_.op(t) == expr::Op::kSelect && arena_.arg(t, 0) == end_.value[v] && !arena_.IsOpen(t);
       if (selects && variable.PerRobot()) Participate(arena_.arg(t, 1));
-      if (selects && array) last_writer(v, arena_.arg(t, 1));
-      if (variable.kind == VariableKind::kAllwrite && !array && t == end_.value[v]) last_writer(v, {});
     }
   });
+  FindCells(goal);
+}
+
+// What every robot may write: whole variables, and cells of arrays, however deep. (Of an array that is read as
+// a whole nothing is known at the end: nothing can be concluded from it.)
+void Round::FindCells(TermId goal) {
+  std::unordered_set<TermId> seen;
+  expr::VisitPostorder(arena_, goal, seen, [&](TermId t) {
+    if (arena_.IsOpen(t)) return;
+    std::vector<TermId> cell;
+    TermId root = t;
+    for (; arena_.op(root) == expr::Op::kSelect; root = arena_.arg(root, 0))
+      cell.insert(cell.begin(), arena_.arg(root, 1));
+    for (size_t v = 0; v < model_.variables.size(); ++v) {
+      if (model_.variables[v].kind != VariableKind::kAllwrite || root != end_.value[v]) continue;
+      if (arena_.sort(arena_.sort_of(t)).kind == expr::SortKind::kArray) continue;
+      const bool known = std::any_of(writers_.begin(), writers_.end(), [&](const LastWriter& w) {
+        return w.variable == v && w.cell == cell;
+      });
+      if (known) continue;
+      const TermId robot = arena_.FreshConstant("last writer of " + model_.variables[v].name, arena_.Int());
+      writers_.push_back({v, std::move(cell), robot});
+      Participate(robot);
+      return;
+    }
+  });
+}
+
+TermId Round::PartOf(TermId whole, const LastWriter& last) {
+  for (const TermId index : last.cell) whole = arena_.Select(whole, index);
+  return whole;
 }
 
 // The value that the robot's action decides.
@@ -109,9 +130,11 @@ TermId Round::Wrote(TermId robot, const LastWriter& last) {
         std::vector<TermId> any;
         for (const SharedWrite& w : effect.writes) {
           if (w.variable != last.variable) continue;
-          const TermId here =
-              w.index.valid() && last.cell.valid() ? arena_.Eq(w.index, last.cell) : arena_.True();
-          any.push_back(arena_.And(w.condition, here));
+          // A write of a part of an array writes all cells of the part.
+          std::vector<TermId> here{w.condition};
+          for (size_t i = 0; i < std::min(w.indices.size(), last.cell.size()); ++i)
+            here.push_back(arena_.Eq(w.indices[i], last.cell[i]));
+          any.push_back(arena_.And(here));
         }
         return arena_.Or(any);
       },
@@ -119,15 +142,14 @@ TermId Round::Wrote(TermId robot, const LastWriter& last) {
 }
 
 TermId Round::Written(TermId robot, const LastWriter& last) {
-  const auto part = [&](TermId whole) { return last.cell.valid() ? arena_.Select(whole, last.cell) : whole; };
   return ByAction(
-      robot, [&](const Effect& effect) { return part(effect.value[last.variable]); },
-      part(start_.value[last.variable]));
+      robot, [&](const Effect& effect) { return PartOf(effect.value[last.variable], last); },
+      PartOf(start_.value[last.variable], last));
 }
 
 // What one robot does, and what that makes of its own part of the state.
 TermId Round::StateOf(TermId r) {
-  std::vector<TermId> facts{vocabulary_.IsRobot(r)};
+  std::vector<TermId> facts;
   for (size_t a = 0; a < actions_.size(); ++a) {
     if (a == 0 && kind_ == Kind::kEvents) continue;
     facts.push_back(arena_.Implies(Acts(r, a), EffectOf(a, r).enabled));
@@ -151,7 +173,8 @@ TermId Round::StateOf(TermId r) {
         arena_.Eq(arena_.Select(end_.stopped, r),
                   arena_.Or(stopped, ByAction(
                                          r, [](const Effect& e) { return e.stops; }, arena_.False()))));
-  return arena_.And(facts);
+  // A goal may read `x[i + 1]` behind a condition: that there is such a robot is not known.
+  return arena_.Implies(vocabulary_.IsRobot(r), arena_.And(facts));
 }
 
 // An urgent event that is enabled must be run, instead of any other, before the environment moves. A robot
@@ -193,10 +216,10 @@ TermId Round::Locks() {
 // The variable has the value of its last writer, or is unchanged if nobody wrote.
 TermId Round::WriterOf(const LastWriter& last) {
   const TermId wrote = Wrote(last.robot, last);
-  const auto part = [&](TermId whole) { return last.cell.valid() ? arena_.Select(whole, last.cell) : whole; };
   std::vector<TermId> facts{
-      arena_.Eq(part(end_.value[last.variable]),
-                arena_.Ite(wrote, Written(last.robot, last), part(start_.value[last.variable])))};
+      vocabulary_.IsRobot(last.robot),
+      arena_.Eq(PartOf(end_.value[last.variable], last),
+                arena_.Ite(wrote, Written(last.robot, last), PartOf(start_.value[last.variable], last)))};
   const auto turn = [&](TermId robot) { return arena_.Apply(turn_, {robot}); };
   for (const TermId r : participants_) {
     if (r == last.robot) continue;
@@ -206,10 +229,12 @@ TermId Round::WriterOf(const LastWriter& last) {
   return arena_.And(facts);
 }
 
-std::vector<solve::Assertion> Round::Relate(TermId goal, const std::vector<TermId>& everyone) {
+std::vector<solve::Assertion> Round::Relate(TermId goal, const std::vector<TermId>& everyone,
+                                            const std::vector<TermId>& others) {
   participants_.clear();
   writers_.clear();
   for (const TermId r : everyone) Participate(r);
+  for (const TermId r : others) Participate(r);
   FindReads(goal);
   // Of a round that is told in full, every shared variable matters.
   for (size_t v = 0; !everyone.empty() && v < model_.variables.size(); ++v) {

@@ -38,20 +38,24 @@ class Round {
   const Effect& EffectOf(size_t action, TermId robot);
 
   /// Makes participants of all robots whose state at the end `goal` reads, and of a last writer for each
-  /// variable that all may write and `goal` reads; returns the relation. `everyone`: participants in any
-  /// case.
-  std::vector<solve::Assertion> Relate(TermId goal, const std::vector<TermId>& everyone);
+  /// variable that all may write and `goal` reads; returns the relation.
+  /// @param everyone  the whole team, if the round is to be told in full; else empty.
+  /// @param others  participants in any case.
+  std::vector<solve::Assertion> Relate(TermId goal, const std::vector<TermId>& everyone,
+                                       const std::vector<TermId>& others = {});
   const std::vector<TermId>& participants() const { return participants_; }
 
  private:
   struct LastWriter {
     size_t variable;
-    TermId cell;  // of an array; else invalid
+    std::vector<TermId> cell;  // its indices, in an array
     TermId robot;
   };
 
   void Participate(TermId robot);
   void FindReads(TermId goal);
+  void FindCells(TermId goal);
+  TermId PartOf(TermId whole, const LastWriter& last);
   TermId StateOf(TermId robot);
   TermId Urgency(TermId robot);
   TermId Locks();

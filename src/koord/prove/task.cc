@@ -20,12 +20,16 @@ std::vector<Task> ListTasks(Problems& problems) {
   };
   for (size_t i = 0; i < problems.theory().invariants(); ++i) {
     const std::string name = InvariantName(problems.vocabulary().model(), i);
-    add(TaskKind::kInitially, i, 0, name + ".initially");
-    add(TaskKind::kRound, i, 0, name + ".round");
+    add(TaskKind::kInitially, i, 0, name + " (initially)");
+    add(TaskKind::kRound, i, 0, name + " (round)");
   }
   for (size_t a = problems.has_init() ? 0 : 1; a < actions.size(); ++a) {
-    if (!problems.ChecksOf(a).empty())
-      add(TaskKind::kDefined, 0, a, "defined." + (a == 0 ? "init" : actions[a]));
+    if (!problems.ChecksOf(a).empty()) add(TaskKind::kDefined, 0, a, "defined." + problems.NameOf(a));
+  }
+  for (size_t p = 0; p < Problems::kParts; ++p) {
+    const size_t place = problems.specification(static_cast<Problems::Part>(p));
+    if (!problems.ChecksOf(place).empty())
+      add(TaskKind::kDefined, 0, place, "defined (" + problems.NameOf(place) + ")");
   }
   for (const size_t f : problems.theory().SummarisedFunctions())
     add(TaskKind::kImpossible, f, 0, "sanity.summary");
@@ -49,8 +53,8 @@ std::vector<Task> SplitRounds(std::vector<Task> tasks, Problems& problems) {
       continue;
     }
     for (const size_t a : Columns(problems)) {
-      const std::string name =
-          InvariantName(problems.vocabulary().model(), task.subject) + "." + problems.round().actions()[a];
+      const std::string invariant = InvariantName(problems.vocabulary().model(), task.subject);
+      const std::string name = a == 0 ? invariant + " (skip)" : invariant + "." + problems.round().actions()[a];
       result.push_back({TaskKind::kStep, task.subject, a, name, solve::Unknown{"not asked"}, 0, {}});
     }
   }

@@ -9,7 +9,7 @@ using lang::TypeKind;
 Vocabulary::Vocabulary(expr::Arena& arena, const Model& model, std::optional<int64_t> robots)
     : arena_(arena), model_(model), fixed_(robots) {
   robots_stop_ = RobotsStop(model);
-  robots_ = robots ? arena.IntNumber(*robots) : arena.Variable(arena.Declare("N_sys", {}, arena.Int()));
+  robots_ = robots ? arena.IntNumber(*robots) : arena.Variable(arena.Declare("number of robots", {}, arena.Int()));
 }
 
 SortId Vocabulary::SortOf(TypeId type) {
@@ -30,10 +30,10 @@ SortId Vocabulary::SortOf(TypeId type) {
       sort = arena_.Real();
       break;
     case TypeKind::kString:
-      sort = arena_.Opaque("string");
+      sort = arena_.Opaque("a string");
       break;
     case TypeKind::kStream:
-      sort = arena_.Opaque("stream");
+      sort = arena_.Opaque("a stream");
       break;
     case TypeKind::kOpaque:
       sort = arena_.Opaque(t.name);
@@ -73,7 +73,7 @@ View Vocabulary::MakeView(const std::string& suffix) {
     view.value.push_back(arena_.Variable(arena_.Declare(name, {}, sort)));
   }
   view.stopped =
-      arena_.Variable(arena_.Declare("stopped" + suffix, {}, arena_.Array(arena_.Int(), arena_.Bool())));
+      arena_.Variable(arena_.Declare("has stopped" + suffix, {}, arena_.Array(arena_.Int(), arena_.Bool())));
   return view;
 }
 
@@ -89,7 +89,7 @@ expr::SymbolId Vocabulary::Function(size_t function, const std::string& planner_
 expr::SymbolId Vocabulary::Dist() {
   uses_dist_ = true;
   const SortId pos = SortOf(model_.types.pos());
-  return arena_.Declare("dist", {pos, pos}, arena_.Real());
+  return arena_.Declare("distance of points", {pos, pos}, arena_.Real());
 }
 
 TermId Vocabulary::IsRobot(TermId i) {
@@ -107,16 +107,6 @@ std::vector<TermId> Vocabulary::Axioms() {
   std::vector<TermId> axioms{arena_.Le(arena_.IntNumber(1), robots_)};
   for (size_t i = 0; i < literals_.size(); ++i) {
     for (size_t j = 0; j < i; ++j) axioms.push_back(arena_.Not(arena_.Eq(literals_[i], literals_[j])));
-  }
-  if (uses_dist_) {
-    const SortId pos = SortOf(model_.types.pos());
-    const TermId p = arena_.FreshBound("p", pos);
-    const TermId q = arena_.FreshBound("q", pos);
-    const TermId d = arena_.Apply(Dist(), {p, q});
-    const TermId zero = arena_.Number(arena_.Real(), expr::Rational(0));
-    axioms.push_back(
-        arena_.Forall({p, q}, arena_.And({arena_.Le(zero, d), arena_.Eq(d, arena_.Apply(Dist(), {q, p})),
-                                          arena_.Eq(arena_.Eq(d, zero), arena_.Eq(p, q))})));
   }
   return axioms;
 }

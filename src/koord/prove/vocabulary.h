@@ -22,6 +22,9 @@ struct View {
 };
 
 /// The sorts and symbols that stand for a program's types, variables and functions.
+///
+/// Variables keep their names. Symbols of our own have a blank in theirs, which no program can write, so that
+/// the two never meet.
 class Vocabulary {
  public:
   /// `robots`: N_sys as a number when it is fixed; else a constant N_sys >= 1.
@@ -34,10 +37,10 @@ class Vocabulary {
   /// The symbol of an external function; a callable port takes the robot first and has a version.
   expr::SymbolId Function(size_t function, const std::string& planner_suffix);
   expr::SymbolId Dist();
-  /// `dist` is known by axioms only, so a model may take a distance that is none.
   /// Texts are only known to be equal or not: counterexamples with them are possible, never certain.
   void MarkTexts() { uses_texts_ = true; }
   bool uses_texts() const { return uses_texts_; }
+  /// `dist` is known by axioms only, so a model may take a distance that is none.
   bool uses_dist() const { return uses_dist_; }
 
   /// Can a robot stop at all? If not, no state has to say that it has not.
@@ -48,8 +51,8 @@ class Vocabulary {
   TermId IsRobot(TermId i);
   /// A constant of the sort of strings for a literal.
   TermId StringLiteral(const std::string& text);
-  /// What is true of the vocabulary itself: N_sys >= 1, different literals are different, `dist` is a
-  /// distance.
+  /// What is true of the vocabulary itself: N_sys >= 1, different literals are different. (For `dist`, see
+  /// `Distances`.)
   std::vector<TermId> Axioms();
 
   expr::Arena& arena() { return arena_; }

@@ -25,12 +25,15 @@ enum class Op : uint8_t {
   kOwnArray,
   kGlobalAt,  // pop an index; push item of b words of the array of c items at a
   kOwnAt,
+  kFlatIndex,  // pop index and the index so far: that times a, plus this; less than a
+  kPack,       // pop the b words of shape a; push the list of lists that they are
+  kUnpack,     // pop a list of shape a; push its b words
   kFrame,      // push b words of the frame at a
   kSetFrame,   // pop b words into the frame at a
-  kSetGlobal,  // pop b words into shared memory at a: a write of one variable
+  kSetGlobal,  // pop b words into shared memory at a: a write of one variable, or of cells of d words each
   kSetOwn,     // pop b words into the robot's block at a
   kSetParam,
-  kSetGlobalAt,  // pop index and value: item of b words of the array of c items at a
+  kSetGlobalAt,  // pop index and value: item of b words of the array of c items at a; d words are one cell
   kSetOwnAt,
   kSetGlobalArray,  // pop a list of c items of b words
   kSetOwnArray,
@@ -124,6 +127,13 @@ struct Instruction {
   uint32_t a = 0;
   uint32_t b = 0;
   uint32_t c = 0;
+  uint32_t d = 0;
+};
+
+/// An array whose items may be arrays: the lengths, the outer one first, and the words of an innermost item.
+struct Shape {
+  std::vector<uint32_t> dimensions;
+  uint32_t width = 1;
 };
 
 /// The code of all events, functions and formulas of one team.
@@ -131,6 +141,7 @@ struct Code {
   std::vector<Instruction> instructions;
   std::vector<diag::Span> spans;  ///< by instruction
   std::vector<Word> constants;
+  std::vector<Shape> shapes;
   std::vector<uint32_t> function_entry;  ///< by function; 0 for external ones
   uint32_t frame_words = 0;
   bool rounded_literals = false;  ///< some number in the program is no double

@@ -113,7 +113,7 @@ void Compiler::Gen(ExprId id) {
       }
       if (e.kind == ExprKind::kField) return Slice(e.args[0], ref.index);
       CHECK(e.kind == ExprKind::kIndex) << "an unresolved name got past the checker: " << e.text;
-      return Index(e);
+      return Index(id);
     case ExprKind::kCall:
       return Call(id, e);
     case ExprKind::kUnary:
@@ -155,27 +155,35 @@ void Compiler::ReadVariable(size_t v) {
   if (!place.exists) return Fail(span_, "a stream has no value");
   if (variable.kind == VariableKind::kParam) {
     Emit(Op::kParam, place.at, place.width);
+  } else if (variable.kind == VariableKind::kAllread && place.length > 0) {
+    for (size_t r = 0; r < layout_.robots(); ++r) {
+      Constant(FromInt(static_cast<int64_t>(r)));
+      ReadCell(v);
+    }
+    Emit(Op::kListMake, layout_.robots(), 1);
   } else if (variable.kind == VariableKind::kAllread) {
-    const size_t items = std::max<uint32_t>(1, place.length);
-    Emit(Op::kRow, place.at, place.width * items);
-  } else if (place.own) {
-    used_robot_ = true;
-    if (place.length > 0)
-      Emit(Op::kOwnArray, place.at, place.width, place.length);
-    else
-      Emit(Op::kOwn, place.at, place.width);
-  } else if (place.length > 0) {
-    Emit(Op::kGlobalArray, place.at, place.width, place.length);
+    Emit(Op::kRow, place.at, place.width);
   } else {
-    Emit(Op::kGlobal, place.at, place.width);
+    used_robot_ = used_robot_ || place.own;
+    if (place.dimensions.size() == 1) {
+      Emit(place.own ? Op::kOwnArray : Op::kGlobalArray, place.at, place.width, place.length);
+      return;
+    }
+    Emit(place.own ? Op::kOwn : Op::kGlobal, place.at, place.words());
+    if (place.length > 0) Emit(Op::kPack, ShapeBehind(place, 0), place.words());
   }
 }
 
 // The robot is on the stack.
 void Compiler::ReadCell(size_t v) {
   const Layout::Place& place = layout_[v];
-  if (place.length > 0) {
+  if (place.dimensions.size() == 1) {
     Emit(Op::kCellArray, place.at, place.width, place.length);
+    return;
+  }
+  if (place.length > 0) {
+    Emit(Op::kCell, place.at, place.words());
+    Emit(Op::kPack, ShapeBehind(place, 0), place.words());
     return;
   }
   // The robot's own cell.
@@ -186,16 +194,53 @@ void Compiler::ReadCell(size_t v) {
   Emit(Op::kCell, place.at, place.width);
 }
 
-void Compiler::Index(const lang::Expr& e) {
-  const Ref root = model_.RefOf(e.args[0]);
+std::optional<Compiler::Element> Compiler::ElementOf(ExprId target) const {
+  Element element{0, {}};
+  while (exprs_[target].kind == ExprKind::kIndex && model_.RefOf(target).kind == RefKind::kNone) {
+    element.indices.insert(element.indices.begin(), exprs_[target].args[1]);
+    target = exprs_[target].args[0];
+  }
+  const Ref root = model_.RefOf(target);
+  if (root.kind != RefKind::kVariable || model_.variables[root.index].kind == VariableKind::kAllread ||
+      element.indices.empty() || element.indices.size() > layout_[root.index].dimensions.size())
+    return std::nullopt;
+  element.variable = root.index;
+  return element;
+}
+
+void Compiler::FlatIndex(const Element& element) {
+  const Layout::Place& place = layout_[element.variable];
+  for (size_t i = 0; i < element.indices.size(); ++i) {
+    Gen(element.indices[i]);
+    span_ = exprs_[element.indices[i]].span;
+    if (i > 0) Emit(Op::kFlatIndex, place.dimensions[i]);
+  }
+}
+
+size_t Compiler::ItemsBehind(const Layout::Place& place, size_t indices) const {
+  size_t items = 1;
+  for (size_t i = indices; i < place.dimensions.size(); ++i) items *= place.dimensions[i];
+  return items;
+}
+
+size_t Compiler::ShapeBehind(const Layout::Place& place, size_t indices) {
+  code_.shapes.push_back(
+      {{place.dimensions.begin() + static_cast<ptrdiff_t>(indices), place.dimensions.end()}, place.width});
+  return code_.shapes.size() - 1;
+}
+
+void Compiler::Index(ExprId id) {
+  const lang::Expr& e = exprs_[id];
   const TypeId base = model_.TypeOf(e.args[0]);
-  if (root.kind == RefKind::kVariable && layout_[root.index].length > 0 &&
-      model_.variables[root.index].kind != VariableKind::kAllread) {
-    const Layout::Place& place = layout_[root.index];
-    Gen(e.args[1]);
+  if (const auto element = ElementOf(id)) {
+    const Layout::Place& place = layout_[element->variable];
+    const size_t depth = element->indices.size();
+    const size_t words = ItemsBehind(place, depth) * place.width;
+    FlatIndex(*element);
     span_ = e.span;
     used_robot_ = used_robot_ || place.own;
-    Emit(place.own ? Op::kOwnAt : Op::kGlobalAt, place.at, place.width, place.length);
+    Emit(place.own ? Op::kOwnAt : Op::kGlobalAt, place.at, words, place.words() / words);
+    if (depth < place.dimensions.size()) Emit(Op::kPack, ShapeBehind(place, depth), words);
     return;
   }
   Gen(e.args[0]);

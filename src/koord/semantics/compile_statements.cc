@@ -203,13 +203,15 @@ void Compiler::Assign(ExprId target) {
     return Assign(inner);
   }
   CHECK(e.kind == ExprKind::kIndex);
-  // A cell of an array is written by itself.
-  const Ref root = model_.RefOf(inner);
-  if (root.kind == RefKind::kVariable && layout_[root.index].length > 0) {
-    const Layout::Place& place = layout_[root.index];
-    Gen(e.args[1]);
+  // A cell of an array, or an array of cells, is written by itself.
+  if (const auto element = ElementOf(target)) {
+    const Layout::Place& place = layout_[element->variable];
+    const size_t depth = element->indices.size();
+    const size_t words = ItemsBehind(place, depth) * place.width;
+    if (depth < place.dimensions.size()) Emit(Op::kUnpack, ShapeBehind(place, depth), words);
+    FlatIndex(*element);
     span_ = e.span;
-    Emit(place.own ? Op::kSetOwnAt : Op::kSetGlobalAt, place.at, place.width, place.length);
+    Emit(place.own ? Op::kSetOwnAt : Op::kSetGlobalAt, place.at, words, place.words() / words, place.width);
     return;
   }
   Gen(inner);
@@ -222,12 +224,15 @@ void Compiler::Assign(ExprId target) {
 void Compiler::Store(size_t v) {
   const Layout::Place& place = layout_[v];
   if (!place.exists) return Fail(span_, "a stream is not a variable");
-  if (place.length > 0)
+  if (place.dimensions.size() == 1) {
     Emit(place.own ? Op::kSetOwnArray : Op::kSetGlobalArray, place.at, place.width, place.length);
-  else if (model_.variables[v].kind == VariableKind::kParam)
+  } else if (model_.variables[v].kind == VariableKind::kParam) {
     Emit(Op::kSetParam, place.at, place.width);
-  else
-    Emit(place.own ? Op::kSetOwn : Op::kSetGlobal, place.at, place.width);
+  } else {
+    if (place.length > 0) Emit(Op::kUnpack, ShapeBehind(place, 0), place.words());
+    Emit(place.own ? Op::kSetOwn : Op::kSetGlobal, place.at, place.words(), 0,
+         place.length > 0 ? place.width : 0);
+  }
 }
 
 }  // namespace rondo::koord::semantics

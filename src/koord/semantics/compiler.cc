@@ -12,9 +12,9 @@ Compiler::Compiler(const Model& model, const Layout& layout, Heap& heap, Code& c
   code_.function_entry.resize(model.functions.size());
 }
 
-size_t Compiler::Emit(Op op, size_t a, size_t b, size_t c) {
-  code_.instructions.push_back(
-      {op, static_cast<uint32_t>(a), static_cast<uint32_t>(b), static_cast<uint32_t>(c)});
+size_t Compiler::Emit(Op op, size_t a, size_t b, size_t c, size_t d) {
+  code_.instructions.push_back({op, static_cast<uint32_t>(a), static_cast<uint32_t>(b),
+                                static_cast<uint32_t>(c), static_cast<uint32_t>(d)});
   code_.spans.push_back(span_);
   return Here() - 1;
 }

@@ -54,7 +54,7 @@ class Compiler {
 
  private:
   uint32_t Width(TypeId type) const { return Layout::Width(model_.types, type); }
-  size_t Emit(Op op, size_t a = 0, size_t b = 0, size_t c = 0);
+  size_t Emit(Op op, size_t a = 0, size_t b = 0, size_t c = 0, size_t d = 0);
   size_t Here() const { return code_.instructions.size(); }
   void Patch(size_t at) { code_.instructions[at].a = static_cast<uint32_t>(Here()); }
   void Constant(Word word);
@@ -75,8 +75,18 @@ class Compiler {
   void Membership(const lang::Expr& e);
   void ReadVariable(size_t variable);
   void ReadCell(size_t variable);
-  void Index(const lang::Expr& e);
+  void Index(ExprId id);
   void Slice(ExprId base, uint32_t field);
+  /// `a[i][j]` of a variable that lies flat.
+  struct Element {
+    size_t variable;
+    std::vector<ExprId> indices;  // the outer one first
+  };
+  std::optional<Element> ElementOf(ExprId target) const;
+  /// Pushes the number of the item, or of the array of items, among those of its kind.
+  void FlatIndex(const Element& element);
+  size_t ItemsBehind(const Layout::Place& place, size_t indices) const;
+  size_t ShapeBehind(const Layout::Place& place, size_t indices);
   uint32_t FieldOffset(TypeId record, uint32_t field) const;
 
   // compile_quantifiers.cc

@@ -153,7 +153,7 @@ bool Environment::Assign(const std::vector<InitialCode>& code) {
 }
 
 bool Environment::Declared(const Visit& visit) {
-  std::fill(memory_.begin(), memory_.end(), 0);
+  memory_ = team_.blank();
   team_.machine().SetMemory(memory_.data());
   if (!Assign(team_.declared())) return true;
   return Initialise(0, 0, visit);
@@ -178,7 +178,7 @@ bool Environment::Initialise(size_t index, size_t robot, const Visit& visit) {
     std::copy_n(values.begin() + static_cast<ptrdiff_t>(i), place.width, memory_.begin() + at);
     if (!Initialise(index + 1, robot, visit)) return false;
   }
-  std::fill_n(memory_.begin() + at, place.width, 0);
+  std::copy_n(team_.blank().begin() + at, place.width, memory_.begin() + at);
   return true;
 }
 

@@ -40,18 +40,23 @@ void Layout::Kinds(const lang::TypeTable& types, TypeId type, std::vector<WordKi
   }
 }
 
-Layout::Layout(const Model& model, size_t robots, const std::vector<uint32_t>& lengths) : robots_(robots) {
+Layout::Layout(const Model& model, size_t robots, const Lengths& lengths) : robots_(robots) {
   for (size_t v = 0; v < model.variables.size(); ++v) {
     const Variable& variable = model.variables[v];
     Place place;
     TypeId item = variable.type;
-    const bool array = model.types.Is(item, TypeKind::kArray) && lengths[v] > 0;
-    if (array) item = model.types[item].parts[0];
+    while (variable.kind != VariableKind::kParam && model.types.Is(item, TypeKind::kArray)) {
+      const auto length = lengths.find(model.types[item].length);
+      if (length == lengths.end()) break;
+      place.dimensions.push_back(length->second);
+      place.length = std::max<uint32_t>(1, place.length) * length->second;
+      item = model.types[item].parts[0];
+    }
+    place.item = item;
     place.width = Width(model.types, item);
-    place.length = array ? lengths[v] : 0;
     place.own = variable.PerRobot();
     place.exists = variable.function < 0 && !model.types.Is(variable.type, TypeKind::kStream);
-    const uint32_t words = !place.exists ? 0 : place.width * std::max<uint32_t>(1, place.length);
+    const uint32_t words = place.words();
     if (variable.kind == VariableKind::kParam) {
       place.at = params_;
       params_ += words;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "koord/check/model.h"
@@ -10,6 +13,9 @@ namespace rondo::koord::semantics {
 /// What one word of a value means.
 enum class WordKind : uint8_t { kBool, kInt, kFloat, kEnum, kHandle };
 
+/// The lengths of arrays, by the text that types have for them.
+using Lengths = std::map<std::string, uint32_t>;
+
 /// Where the variables of a team are. A state is a sequence of words: first what all robots may write, then
 /// one block for each robot with its local variables, ports, cells and the mark that it has stopped.
 class Layout {
@@ -17,13 +23,18 @@ class Layout {
   struct Place {
     uint32_t at = 0;      ///< in shared memory, in the block, or among the parameters
     uint32_t width = 0;   ///< words of one item
-    uint32_t length = 0;  ///< of an array; 0 for anything else
+    uint32_t length = 0;  ///< items of an array, those of arrays in it counted one by one; 0 for anything else
+    std::vector<uint32_t> dimensions;  ///< of an array: the length of each level, the outer one first
+    TypeId item;                       ///< the type of an item, or of the variable
+    uint32_t words() const { return exists ? width * std::max<uint32_t>(1, length) : 0; }
     bool own = false;
     bool exists = true;  ///< false for ports that are called and for streams
   };
 
-  /// `lengths`: by variable, items of an array (0 for others).
-  Layout(const Model& model, size_t robots, const std::vector<uint32_t>& lengths);
+  /// Arrays of variables lie flat, item by item, arrays of arrays too; arrays inside records and lists are
+  /// handles.
+  /// @param lengths  by the text of a type's length; arrays of other lengths are handles.
+  Layout(const Model& model, size_t robots, const Lengths& lengths);
 
   /// Words of a value of this type; arrays and lists are handles.
   static uint32_t Width(const lang::TypeTable& types, TypeId type);

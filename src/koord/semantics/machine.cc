@@ -22,6 +22,7 @@ size_t Pushes(const Instruction& i) {
     case Op::kOwnAt:
     case Op::kFrame:
     case Op::kReplace:
+    case Op::kUnpack:
       return i.b;
     case Op::kExternal:
       return i.c;
@@ -91,6 +92,31 @@ void Machine::Undo() {
   units_.clear();
 }
 
+// The list that the words from `words` on are; moves `words` behind them.
+Word Machine::Pack(const Shape& shape, size_t level, const Word*& words) {
+  const size_t items = shape.dimensions[level];
+  if (level + 1 == shape.dimensions.size()) {
+    const Word* from = words;
+    words += items * shape.width;
+    return heap_.Intern({from, items * shape.width});
+  }
+  std::vector<Word> lists;
+  for (size_t k = 0; k < items; ++k) lists.push_back(Pack(shape, level + 1, words));
+  return heap_.Intern(lists);
+}
+
+// The reverse; false if the list has another shape.
+bool Machine::Unpack(const Shape& shape, size_t level, Word list, Word*& words) {
+  const auto items = heap_[list];
+  const bool last = level + 1 == shape.dimensions.size();
+  if (items.size() != static_cast<size_t>(shape.dimensions[level]) * (last ? shape.width : 1)) return false;
+  if (last) {
+    words = std::copy(items.begin(), items.end(), words);
+    return true;
+  }
+  return std::all_of(items.begin(), items.end(), [&](Word item) { return Unpack(shape, level + 1, item, words); });
+}
+
 // One function: the state of the machine stays in registers, and a switch is what compilers make fast.
 // NOLINTNEXTLINE(readability-function-cognitive-complexity,readability-function-size)
 bool Machine::Run(uint32_t entry, size_t robot, bool total) {
@@ -126,6 +152,9 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
   const auto unit = [&](uint32_t at, uint32_t width) {
     const Unit u{at, width};
     if (std::find(units_.begin(), units_.end(), u) == units_.end()) units_.push_back(u);
+  };
+  const auto cells = [&](uint32_t at, uint32_t words, uint32_t cell) {
+    for (uint32_t k = 0; k < words; k += cell) unit(at + k, cell);
   };
   const auto array = [&](const Word* from, uint32_t words) { *s++ = heap_.Intern({from, words}); };
 #define RONDO_FAIL(what) return Stop(Fault::what, static_cast<size_t>(i - code))
@@ -208,6 +237,33 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         for (uint32_t w = 0; w < i->b; ++w) *s++ = inside ? from[w] : 0;
         break;
       }
+      case Op::kFlatIndex: {
+        const int64_t k = ToInt(*--s);
+        const int64_t outer = ToInt(s[-1]);
+        int64_t flat = 0;
+        const bool inside = k >= 0 && static_cast<uint64_t>(k) < i->a && outer >= 0 &&
+                            !__builtin_mul_overflow(outer, static_cast<int64_t>(i->a), &flat) &&
+                            !__builtin_add_overflow(flat, k, &flat);
+        if (!inside) RONDO_TOTAL(kIndex);
+        s[-1] = FromInt(inside ? flat : -1);
+        break;
+      }
+      case Op::kPack: {
+        s -= i->b;
+        const Word* from = s;
+        const Word list = Pack(code_.shapes[i->a], 0, from);
+        *s++ = list;
+        break;
+      }
+      case Op::kUnpack: {
+        Word* to = --s;
+        if (!Unpack(code_.shapes[i->a], 0, *s, to)) {
+          RONDO_TOTAL(kIndex);
+          std::fill_n(s, i->b, 0);
+        }
+        s += i->b;
+        break;
+      }
       case Op::kFrame:
         for (uint32_t k = 0; k < i->b; ++k) *s++ = frame[i->a + k];
         break;
@@ -218,7 +274,10 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
       case Op::kSetGlobal:
         s -= i->b;
         write(i->a, s, i->b);
-        unit(i->a, i->b);
+        if (i->d == 0)
+          unit(i->a, i->b);
+        else
+          cells(i->a, i->b, i->d);
         break;
       case Op::kSetOwn:
         s -= i->b;
@@ -238,7 +297,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         }
         const uint32_t at = (i->op == Op::kSetOwnAt ? own : 0) + i->a + static_cast<uint32_t>(k) * i->b;
         write(at, s, i->b);
-        if (i->op == Op::kSetGlobalAt) unit(at, i->b);
+        if (i->op == Op::kSetGlobalAt) cells(at, i->b, i->d);
         break;
       }
       case Op::kSetGlobalArray:
@@ -246,7 +305,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         const auto items = heap_[*--s];
         if (items.size() != static_cast<size_t>(i->b) * i->c) RONDO_FAIL(kIndex);
         write((i->op == Op::kSetOwnArray ? own : 0) + i->a, items.data(), i->b * i->c);
-        for (uint32_t k = 0; i->op == Op::kSetGlobalArray && k < i->c; ++k) unit(i->a + k * i->b, i->b);
+        if (i->op == Op::kSetGlobalArray) cells(i->a, i->b * i->c, i->b);
         break;
       }
       case Op::kSlice:

@@ -25,7 +25,7 @@ Owner OwnerOf(const Team& team, uint32_t at) {
   for (size_t v = 0; v < team.model().variables.size(); ++v) {
     const Layout::Place& place = layout[v];
     if (!place.exists || team.model().variables[v].kind == VariableKind::kParam) continue;
-    const uint32_t words = place.width * std::max<uint32_t>(1, place.length);
+    const uint32_t words = place.words();
     for (size_t r = 0; r < (place.own ? team.robots() : 1); ++r) {
       const uint32_t from = layout.Address(v, r);
       if (from <= at && at < from + words) return {v, r, true};
@@ -42,7 +42,7 @@ std::vector<std::string> Changes(const Team& team, std::span<const Word> before,
   for (size_t v = 0; v < model.variables.size(); ++v) {
     const Layout::Place& place = team.layout()[v];
     if (!place.exists || model.variables[v].kind == VariableKind::kParam) continue;
-    const uint32_t words = place.width * std::max<uint32_t>(1, place.length);
+    const uint32_t words = place.words();
     for (size_t r = 0; r < (place.own ? team.robots() : 1); ++r) {
       const uint32_t at = team.layout().Address(v, r);
       if (std::equal(before.begin() + at, before.begin() + at + words, after.begin() + at)) continue;
@@ -114,14 +114,7 @@ json StateToJson(const Team& team, std::span<const Word> state) {
   const auto one = [&](size_t v, size_t r) {
     const Layout::Place& place = team.layout()[v];
     const uint32_t at = team.layout().Address(v, r);
-    TypeId type = team.TypeOfVariable(v);
-    if (place.length == 0) return ToJson(model.types, team.heap(), type, state.subspan(at, place.width));
-    type = model.types[type].parts[0];
-    json list = json::array();
-    for (uint32_t i = 0; i < place.length; ++i)
-      list.push_back(
-          ToJson(model.types, team.heap(), type, state.subspan(at + i * place.width, place.width)));
-    return list;
+    return ToJson(model.types, team.heap(), place, state.subspan(at, place.words()));
   };
   for (size_t v = 0; v < model.variables.size(); ++v) {
     const Layout::Place& place = team.layout()[v];

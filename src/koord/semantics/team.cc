@@ -21,8 +21,8 @@ std::unique_ptr<Team> Team::Make(const Model& model, const TeamOptions& options,
 
 // Parameters, in the order of their declaration, and the lengths of arrays.
 bool Team::Parameters(const TeamOptions& options, diag::Diagnostics& diagnostics) {
-  lengths_.assign(model_.variables.size(), 0);
-  const Layout flat(model_, options.robots, lengths_);
+  // Without lengths: nothing but parameters is looked at.
+  const Layout flat(model_, options.robots, {});
   params_.assign(flat.param_words(), 0);
   const size_t before = diagnostics.errors();
   const auto evaluate = [&](ExprId e, TypeId type) -> std::optional<std::vector<Word>> {
@@ -70,18 +70,26 @@ bool Team::Parameters(const TeamOptions& options, diag::Diagnostics& diagnostics
     }
     if (value) std::copy(value->begin(), value->end(), params_.begin() + flat[v].at);
   }
+  constexpr int64_t kLongest = 100'000;
+  constexpr uint64_t kMostItems = 1'000'000;
+  for (const auto& [text, e] : model_.lengths) {
+    if (diagnostics.errors() != before) break;
+    const auto length = evaluate(e, model_.types.integer());
+    if (length && ToInt((*length)[0]) >= 1 && ToInt((*length)[0]) <= kLongest)
+      lengths_[text] = static_cast<uint32_t>((*length)[0]);
+  }
+  lengths_[kRobotsLength] = static_cast<uint32_t>(options.robots);
   for (size_t v = 0; v < model_.variables.size() && diagnostics.errors() == before; ++v) {
     const Variable& variable = model_.variables[v];
-    if (!model_.types.Is(variable.type, TypeKind::kArray) || variable.kind == VariableKind::kParam) continue;
-    const auto length =
-        variable.length.valid() ? evaluate(variable.length, model_.types.integer()) : std::nullopt;
-    if (variable.kind == VariableKind::kAllread || !length || ToInt((*length)[0]) < 1 ||
-        ToInt((*length)[0]) > 100'000) {
+    uint64_t items = 1;
+    for (TypeId type = variable.type; model_.types.Is(type, TypeKind::kArray) && items <= kMostItems;
+         type = model_.types[type].parts[0]) {
+      const auto length = lengths_.find(model_.types[type].length);
+      items = length == lengths_.end() ? kMostItems + 1 : items * length->second;
+    }
+    if (items > kMostItems)
       diagnostics.Report(Kind::kKoordNotExecutable, variable.span,
                          fmt::format("array `{}` has no length that can be executed", variable.name));
-      continue;
-    }
-    lengths_[v] = static_cast<uint32_t>((*length)[0]);
   }
   return diagnostics.errors() == before;
 }
@@ -155,12 +163,44 @@ bool Team::Compile(const TeamOptions& options, diag::Diagnostics& diagnostics) {
     unchecked_.push_back({SummaryName(*model_.summaries[s]), why.span, why.reason});
   branches_ = compiler.branches();
   logged_ = compiler.logged();
+  MakeBlank();
   heap_.Pin();
   machine_ = std::make_unique<Machine>(code_, *layout_, heap_);
   machine_->params() = params_;
   machine_->marks().resize(branches_.size());
   machine_->SetShow([this](size_t type, std::span<const Word> value) { return ShowLogged(type, value); });
   return diagnostics.errors() == before;
+}
+
+// Zero, false, the first member, the empty list or text; of an array as many as it has.
+std::vector<Word> Team::Default(TypeId type) {
+  const lang::Type& t = model_.types[type];
+  std::vector<Word> words;
+  if (t.kind == TypeKind::kRecord || t.kind == TypeKind::kTuple) {
+    for (const TypeId part : t.parts) {
+      const std::vector<Word> more = Default(part);
+      words.insert(words.end(), more.begin(), more.end());
+    }
+    return words;
+  }
+  const auto length = t.kind == TypeKind::kArray ? lengths_.find(t.length) : lengths_.end();
+  if (length == lengths_.end()) return {0};
+  const std::vector<Word> item = Default(t.parts[0]);
+  for (uint32_t i = 0; i < length->second; ++i) words.insert(words.end(), item.begin(), item.end());
+  return {heap_.Intern(words)};
+}
+
+void Team::MakeBlank() {
+  blank_.assign(layout_->words(), 0);
+  for (size_t v = 0; v < model_.variables.size(); ++v) {
+    const Layout::Place& place = (*layout_)[v];
+    if (!place.exists || model_.variables[v].kind == VariableKind::kParam) continue;
+    const std::vector<Word> item = Default(place.item);
+    for (size_t r = 0; r < (place.own ? robots() : 1); ++r) {
+      for (uint32_t at = 0; at < place.words(); at += place.width)
+        std::copy(item.begin(), item.end(), blank_.begin() + layout_->Address(v, r) + at);
+    }
+  }
 }
 
 std::optional<FormulaCode> Team::CompileFormula(Compiler& compiler, std::string name, diag::Span span,
@@ -259,14 +299,7 @@ std::string Team::ShowLogged(size_t type, std::span<const Word> value) const {
 
 std::string Team::ShowVariable(std::span<const Word> state, size_t v, size_t robot) const {
   const Layout::Place& place = (*layout_)[v];
-  const uint32_t at = layout_->Address(v, robot);
-  if (place.length == 0) return Show(model_.types, heap_, TypeOfVariable(v), state.subspan(at, place.width));
-  std::string text;
-  const TypeId item = model_.types[TypeOfVariable(v)].parts[0];
-  for (uint32_t i = 0; i < place.length; ++i)
-    text += (i == 0 ? "" : ", ") +
-            Show(model_.types, heap_, item, state.subspan(at + i * place.width, place.width));
-  return "[" + text + "]";
+  return Show(model_.types, heap_, place, state.subspan(layout_->Address(v, robot), place.words()));
 }
 
 std::string Team::NameOf(size_t v, size_t robot) const {
@@ -281,12 +314,10 @@ void Team::Collect(std::span<const std::span<const Word>> states) {
     for (size_t v = 0; v < model_.variables.size(); ++v) {
       const Layout::Place& place = (*layout_)[v];
       if (!place.exists || model_.variables[v].kind == VariableKind::kParam) continue;
-      TypeId type = TypeOfVariable(v);
-      if (place.length > 0) type = model_.types[type].parts[0];
       for (size_t r = 0; r < (place.own ? robots() : 1); ++r) {
         for (uint32_t i = 0; i < std::max<uint32_t>(1, place.length); ++i) {
           const size_t at = layout_->Address(v, r) + i * place.width;
-          MarkHandles(model_.types, heap_, type, state.subspan(at, place.width));
+          MarkHandles(model_.types, heap_, place.item, state.subspan(at, place.width));
         }
       }
     }

@@ -99,6 +99,8 @@ class Team {
   bool Holds(const FormulaCode& formula, size_t* robot = nullptr, bool* defined = nullptr);
   std::string ShowLogged(size_t type, std::span<const Word> value) const;
   TypeId TypeOfVariable(size_t variable) const { return model_.variables[variable].type; }
+  /// A state in which every variable is zero, empty or false.
+  const std::vector<Word>& blank() const { return blank_; }
   /// The value of a variable in a state, for people.
   std::string ShowVariable(std::span<const Word> state, size_t variable, size_t robot) const;
   /// `x[2]`, `Motion[2].psn`, `sum`
@@ -108,6 +110,8 @@ class Team {
 
  private:
   explicit Team(const Model& model) : model_(model) {}
+  void MakeBlank();
+  std::vector<Word> Default(TypeId type);
   bool Parameters(const TeamOptions& options, diag::Diagnostics& diagnostics);
   bool Compile(const TeamOptions& options, diag::Diagnostics& diagnostics);
   void Specification(Compiler& compiler);
@@ -120,7 +124,7 @@ class Team {
   std::unique_ptr<Layout> layout_;
   std::unique_ptr<Machine> machine_;
   std::vector<Word> params_;
-  std::vector<uint32_t> lengths_;
+  Lengths lengths_;
   std::vector<EventCode> events_;
   std::vector<uint32_t> inits_;
   std::vector<InitialCode> declared_;
@@ -136,6 +140,7 @@ class Team {
   std::vector<std::pair<const Stmt*, bool>> branches_;
   std::vector<TypeId> logged_;
   std::vector<size_t> zeroed_;
+  std::vector<Word> blank_;
   bool robots_stop_ = false;
   bool has_sensors_ = false;
 };

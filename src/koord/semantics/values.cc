@@ -5,8 +5,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "koord/semantics/layout.h"
-
 namespace rondo::koord::semantics {
 
 using lang::TypeKind;
@@ -70,6 +68,36 @@ std::string Show(const lang::TypeTable& types, const Heap& heap, TypeId id, std:
       return words[0] == 0 ? fmt::format("empty {}", type.name) : fmt::format("{} #{}", type.name, words[0]);
   }
   return "";
+}
+
+namespace {
+
+// Puts the items of arrays together level by level: `item(words)` tells one, `list(parts)` makes one of many.
+template <typename Result, typename Item, typename Join>
+Result Nested(const Layout::Place& place, size_t level, std::span<const Word> words, const Item& item,
+              const Join& list) {
+  if (level == place.dimensions.size()) return item(words);
+  const size_t part = words.size() / place.dimensions[level];
+  std::vector<Result> parts;
+  for (size_t at = 0; at < words.size(); at += part)
+    parts.push_back(Nested<Result>(place, level + 1, words.subspan(at, part), item, list));
+  return list(parts);
+}
+
+}  // namespace
+
+std::string Show(const lang::TypeTable& types, const Heap& heap, const Layout::Place& place,
+                 std::span<const Word> words) {
+  return Nested<std::string>(
+      place, 0, words, [&](std::span<const Word> item) { return Show(types, heap, place.item, item); },
+      [](const std::vector<std::string>& parts) { return fmt::format("[{}]", fmt::join(parts, ", ")); });
+}
+
+json ToJson(const lang::TypeTable& types, const Heap& heap, const Layout::Place& place,
+            std::span<const Word> words) {
+  return Nested<json>(
+      place, 0, words, [&](std::span<const Word> item) { return ToJson(types, heap, place.item, item); },
+      [](const std::vector<json>& parts) { return json(parts); });
 }
 
 json ToJson(const lang::TypeTable& types, const Heap& heap, TypeId id, std::span<const Word> words) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <set>
 
 #include "lang/suggest.h"
@@ -107,6 +108,11 @@ expr::TermId TermReader::Symbol(const SExpr& e) {
   if (const auto number = Rational::Parse(e.text)) {
     const bool integer = e.text.find_first_not_of("-0123456789") == std::string::npos;
     return arena_.Number(integer ? arena_.Int() : arena_.Real(), *number);
+  }
+  if (std::isdigit(static_cast<unsigned char>(e.text[0])) || e.text[0] == '#') {
+    diagnostics_.Report(Kind::kSmtUnsupported, e.span, fmt::format("`{}` is no number that can be read", e.text))
+        .Help("numbers are written 12, 1.5 or 1e-3, with exponents up to 400");
+    return {};
   }
   std::vector<std::string> names;
   for (const auto& [name, term] : variables_) names.push_back(name);
