@@ -6,12 +6,14 @@
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 
 #include "driver/exit_status.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
+#include "solve/z3/z3_solver.h"
 
 namespace rondo::driver {
 
@@ -58,6 +60,10 @@ int Main(int argc, char** argv) {
   if ((std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && errno != EPIPE && status == kEstablished) {
     PrintFailure("cannot write the output");
     return kRejected;
+  }
+  if (solve::z3::LeftBehind()) {
+    std::fflush(nullptr);
+    std::_Exit(status);
   }
   return status;
 }

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "expr/evaluate.h"
+#include "expr/numeric.h"
 #include "expr/smtlib.h"
 
 namespace rondo::driver {
@@ -26,13 +29,15 @@ class Levels {
     if (command.kind == Command::Kind::kAssert) levels_.back().push_back({command.terms[0], ""});
     if (command.kind == Command::Kind::kPush) levels_.resize(levels_.size() + command.levels);
     if (command.kind == Command::Kind::kPop) levels_.resize(levels_.size() - command.levels);
-    if (command.kind == Command::Kind::kReset) levels_.assign(1, {});
+    if (command.kind == Command::Kind::kReset || command.kind == Command::Kind::kResetAssertions)
+      levels_.assign(1, {});
   }
 
-  solve::Query Query() const {
+  solve::Query Query(const std::vector<expr::TermId>& assumed) const {
     solve::Query query{&script_.arena, {}, script_.variables};
     for (const auto& level : levels_)
       query.assertions.insert(query.assertions.end(), level.begin(), level.end());
+    for (const expr::TermId t : assumed) query.assertions.push_back({t, ""});
     return query;
   }
 
@@ -60,14 +65,21 @@ class Runner {
       case Command::Kind::kAssert:
       case Command::Kind::kPush:
       case Command::Kind::kPop:
+      case Command::Kind::kResetAssertions:
+        levels_.Take(command);
+        return;
       case Command::Kind::kReset:
         levels_.Take(command);
+        declared_.clear();
+        return;
+      case Command::Kind::kDeclare:
+        Declare(command.terms[0]);
         return;
       case Command::Kind::kEcho:
         outcome_.text += command.text + "\n";
         return;
       case Command::Kind::kCheckSat:
-        Check();
+        Check(command.terms);
         if (options_.want_model) PrintModel();
         return;
       case Command::Kind::kGetModel:
@@ -79,14 +91,23 @@ class Runner {
     }
   }
 
+  // Of several with one name the last one is meant.
+  void Declare(expr::TermId variable) {
+    std::erase_if(declared_, [&](expr::TermId v) { return Name(v) == Name(variable); });
+    declared_.push_back(variable);
+    if (const auto it = script_.names.find(variable); it != script_.names.end())
+      printer_.Define(variable, expr::Quoted(it->second));
+  }
+
   double Precision() const {
     if (options_.precision) return *options_.precision;
     return script_.precision ? script_.precision->ToDouble() : kDefaultPrecision;
   }
 
-  void Check() {
-    const solve::Query query = levels_.Query();
-    const solve::Budget budget{options_.timeout, false, options_.certificate};
+  void Check(const std::vector<expr::TermId>& assumed) {
+    const solve::Query query = levels_.Query(assumed);
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline_ - Clock::now());
+    const solve::Budget budget{std::max(left, std::chrono::milliseconds(1)), false, options_.certificate};
     const Clock::time_point start = Clock::now();
     CheckOutcome check;
     if (options_.only != nullptr) {
@@ -100,6 +121,7 @@ class Runner {
       portfolio.icp.jobs = options_.jobs;
       portfolio.icp.lemmas = options_.lemmas;
       portfolio.icp.precision = std::min(kFinest, Precision());
+      portfolio.icp.widest = Precision();
       check.report = solve::portfolio::PortfolioSolver(portfolio).Decide(query, budget, stop_);
     }
     check.seconds = std::chrono::duration<double>(Clock::now() - start).count();
@@ -110,6 +132,7 @@ class Runner {
   void Tell(CheckOutcome& check) {
     values_.clear();
     const solve::Answer& answer = check.report.answer;
+    has_model_ = std::holds_alternative<solve::Sat>(answer);
     if (const auto* unknown = std::get_if<solve::Unknown>(&answer)) {
       check.answer = "unknown";
       check.reason = unknown->reason;
@@ -120,8 +143,15 @@ class Runner {
     outcome_.text += check.answer + "\n";
     if (const auto* sat = std::get_if<solve::Sat>(&answer)) {
       values_ = sat->values;
-      if (!sat->exact) outcome_.text += "; a solution exists; the values of a model are near it\n";
-      for (const expr::TermId v : script_.variables) {
+      for (const auto& [variable, near] : sat->near) values_.emplace(variable, expr::Value{near});
+      // Variables that nothing constrains may have any value.
+      for (const expr::TermId v : declared_) {
+        const bool truth = script_.arena.sort_of(v) == script_.arena.Bool();
+        values_.emplace(v, truth ? expr::Value{false} : expr::Value{expr::Rational(0)});
+      }
+      if (!sat->exact || !sat->near.empty())
+        outcome_.text += "; a solution exists; the values of a model are near it\n";
+      for (const expr::TermId v : declared_) {
         if (const auto it = values_.find(v); it != values_.end())
           check.model.emplace_back(Name(v), expr::ToString(it->second));
       }
@@ -132,15 +162,21 @@ class Runner {
     }
   }
 
-  std::string Name(expr::TermId v) const { return script_.arena.symbol(script_.arena.symbol_of(v)).name; }
+  std::string Name(expr::TermId v) const { return script_.NameOf(v); }
+
+  bool HasModel() {
+    if (!has_model_) outcome_.text += "(error \"there is no model: the last answer was not `sat`\")\n";
+    return has_model_;
+  }
 
   void PrintModel() {
-    if (values_.empty()) return;
+    if (!has_model_ && options_.want_model) return;
+    if (!HasModel()) return;
     outcome_.text += "(\n";
-    for (const expr::TermId v : script_.variables) {
+    for (const expr::TermId v : declared_) {
       const auto it = values_.find(v);
       if (it == values_.end()) continue;
-      outcome_.text += fmt::format("  (define-fun {} () {} {})\n", expr::ToSmtLib(script_.arena, v),
+      outcome_.text += fmt::format("  (define-fun {} () {} {})\n", printer_.Print(v),
                                    script_.arena.sort(script_.arena.sort_of(v)).name, Literal(it->second));
     }
     outcome_.text += ")\n";
@@ -156,7 +192,18 @@ class Runner {
     return negative ? fmt::format("(- {})", text) : text;
   }
 
+  // Of a function that has no rational value there: what doubles make of it.
+  std::string Nearly(expr::TermId term) {
+    expr::Numeric::Point point;
+    for (const auto& [variable, value] : values_) {
+      if (value.IsNumber()) point[variable] = value.AsNumber().ToDouble();
+    }
+    const double near = expr::Numeric(script_.arena, point)(term);
+    return std::isfinite(near) ? Literal(expr::Value{expr::Rational::FromDouble(near)}) : "?";
+  }
+
   void PrintValues(const Command& command) {
+    if (!HasModel()) return;
     const expr::Valuation valuation = [&](expr::TermId t) -> std::optional<expr::Value> {
       const auto it = values_.find(t);
       return it == values_.end() ? std::nullopt : std::optional(it->second);
@@ -165,8 +212,8 @@ class Runner {
     for (size_t i = 0; i < command.terms.size(); ++i) {
       const auto value = expr::Evaluate(script_.arena, command.terms[i], valuation);
       outcome_.text +=
-          fmt::format("{}({} {})", i == 0 ? "" : "\n ", expr::ToSmtLib(script_.arena, command.terms[i]),
-                      value ? Literal(*value) : "?");
+          fmt::format("{}({} {})", i == 0 ? "" : "\n ", printer_.Print(command.terms[i]),
+                      value ? Literal(*value) : Nearly(command.terms[i]));
     }
     outcome_.text += ")\n";
   }
@@ -175,7 +222,11 @@ class Runner {
   const ScriptOptions& options_;
   const base::StopToken& stop_;
   Levels levels_;
+  std::vector<expr::TermId> declared_;  // in sight, in order
+  expr::SmtPrinter printer_{script_.arena};
   std::map<expr::TermId, expr::Value> values_;
+  bool has_model_ = false;  // after `sat`
+  Clock::time_point deadline_ = Clock::now() + options_.timeout;
   ScriptOutcome outcome_;
 };
 
@@ -192,7 +243,7 @@ std::vector<std::string> Questions(const lang::smtlib::Script& script) {
   for (const Command& command : script.commands) {
     levels.Take(command);
     if (command.kind == Command::Kind::kCheckSat)
-      result.push_back(solve::ToSmtLib(levels.Query(), expr::SmtFunctions::kNamed));
+      result.push_back(solve::ToSmtLib(levels.Query(command.terms), expr::SmtFunctions::kNamed));
   }
   return result;
 }

@@ -14,7 +14,7 @@ struct ScriptOptions {
   std::vector<const solve::Solver*> portfolio;  ///< engines beside interval arithmetic
   const solve::Solver* only = nullptr;          ///< instead of all others
   unsigned jobs = 1;
-  std::chrono::milliseconds timeout{60'000};  ///< for each `(check-sat)`
+  std::chrono::milliseconds timeout{60'000};  ///< for all of the script
   std::optional<double> precision;            ///< instead of the script's
   bool compare = false;
   bool lemmas = true;

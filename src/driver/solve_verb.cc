@@ -180,7 +180,7 @@ void AddSolveVerb(CLI::App& app, int& status) {
       "auto (interval arithmetic, then Z3 beside it), icp (interval arithmetic alone), z3, or a program "
       "such as cvc5 or dreal; default: auto");
   verb.Option("--jobs", options->jobs, "threads; default: one for each core");
-  verb.Option("--timeout", options->timeout, "seconds for each question; default: 60").Between(0.001, 1e6);
+  verb.Option("--timeout", options->timeout, "seconds for each script; default: 60").Between(0.001, 1e6);
   verb.Option("--precision", options->precision,
               "the widest box that may be answered with delta-sat; default: what the script says")
       .Between(1e-12, 1e3);

@@ -72,6 +72,7 @@ class Arena {
   SymbolId Declare(std::string_view name, std::vector<SortId> parameters, SortId result);
   /// A symbol unlike any other: `name`, or `name!1`, `name!2`, ...
   SymbolId Fresh(std::string_view name, std::vector<SortId> parameters, SortId result);
+  bool IsDeclared(std::string_view name) const { return symbol_names_.contains(std::string(name)); }
   const Symbol& symbol(SymbolId id) const { return symbols_[id.index()]; }
 
   // -- leaves

@@ -1,9 +1,35 @@
 #include "expr/elementary.h"
 
+#include <cstdlib>
+
 #include "base/check.h"
 #include "expr/arena.h"
 
 namespace rondo::expr {
+
+namespace {
+
+constexpr int64_t kLargestExponent = 64;  // written as a product
+constexpr size_t kMostDigits = 20'000;
+
+// An integer between -kMost and kMost.
+std::optional<int64_t> SmallInteger(const Rational& value, int64_t most) {
+  if (!value.IsInteger() || value > Rational(most) || value < Rational(-most)) return std::nullopt;
+  return static_cast<int64_t>(value.ToDouble());
+}
+
+std::optional<Rational> ExactPower(const Rational& base, const Rational& exponent) {
+  if (exponent.IsZero() || base == Rational(1)) return Rational(1);
+  if (base.IsZero()) return exponent > Rational(0) ? std::optional(Rational(0)) : std::nullopt;
+  constexpr int64_t kMost = 10'000;
+  const auto n = SmallInteger(exponent, kMost);
+  if (!n || base.Digits() * static_cast<size_t>(std::abs(*n)) > kMostDigits) return std::nullopt;
+  Rational result(1);
+  for (int64_t i = 0; i < std::abs(*n); ++i) result = result * base;
+  return *n < 0 ? Rational(1) / result : result;
+}
+
+}  // namespace
 
 std::optional<Rational> ExactValue(Elementary function, std::span<const Rational> args) {
   const Rational zero(0);
@@ -34,6 +60,8 @@ std::optional<Rational> ExactValue(Elementary function, std::span<const Rational
       return known(one, zero);
     case Elementary::kAtan2:
       return args[1] > zero ? known(zero, zero) : std::nullopt;
+    case Elementary::kPower:
+      return ExactPower(a, args[1]);
     case Elementary::kCount_:
       break;
   }
@@ -52,6 +80,14 @@ TermId Arena::Apply(Elementary function, std::vector<TermId> args) {
     if (const auto value = ExactValue(function, values)) {
       return Fire(Rewrite::kElementaryConstant, Op::kElementary, real_, payload, std::move(args),
                   Number(real_, *value));
+    }
+  }
+  if (function == Elementary::kPower && IsNumber(args[1])) {
+    if (const auto n = SmallInteger(number(args[1]), kLargestExponent)) {
+      TermId product = Number(real_, Rational(1));
+      for (int64_t i = 0; i < std::abs(*n); ++i) product = i == 0 ? args[0] : Mul(product, args[0]);
+      const TermId result = *n < 0 ? Divide(Number(real_, Rational(1)), product) : product;
+      return Fire(Rewrite::kPowerProduct, Op::kElementary, real_, payload, std::move(args), result);
     }
   }
   return Intern(Op::kElementary, real_, payload, args);

@@ -70,6 +70,8 @@ double Numeric::One(TermId term) {
       return std::exp(arg(0));
     case Elementary::kLog:
       return std::log(arg(0));
+    case Elementary::kPower:
+      return arg(0) == 0 && arg(1) < 0 ? kNone : std::pow(arg(0), arg(1));
     case Elementary::kCount_:
       break;
   }

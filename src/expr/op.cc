@@ -98,6 +98,8 @@ std::string_view Name(Elementary function) {
       return "exp";
     case Elementary::kLog:
       return "log";
+    case Elementary::kPower:
+      return "power";
     case Elementary::kCount_:
       return "";
   }
@@ -106,7 +108,8 @@ std::string_view Name(Elementary function) {
 
 size_t Arity(Elementary function) {
   const bool binary =
-      function == Elementary::kMin || function == Elementary::kMax || function == Elementary::kAtan2;
+      function == Elementary::kMin || function == Elementary::kMax ||
+                      function == Elementary::kAtan2 || function == Elementary::kPower;
   return binary ? 2 : 1;
 }
 
@@ -170,6 +173,8 @@ std::string_view Name(Rewrite rewrite) {
       return "to-real-constant";
     case Rewrite::kElementaryConstant:
       return "elementary-constant";
+    case Rewrite::kPowerProduct:
+      return "power-product";
     case Rewrite::kSelectStore:
       return "select-store";
     case Rewrite::kStoreStore:

@@ -39,8 +39,12 @@ enum class Op : uint8_t {
   kListSet,
 };
 
-/// The functions of reals that have no exact arithmetic. min, max and atan2 have two arguments, the others
-/// one. A partial function has no value outside its domain: an atomic formula about it is false there.
+/// The functions of reals that have no exact arithmetic. min, max, atan2 and power have two arguments, the
+/// others one. A partial function has no value outside its domain: an atomic formula about it is false there.
+///
+/// power(x, y) is exp(y log x) for x > 0; 0 for x = 0 < y and 1 for y = 0, whatever x; a product of x's or its
+/// reciprocal where y is an integer. Elsewhere (0 to a negative power, a negative base with an exponent that
+/// is no integer) it is some number, as 1 / 0 is (docs/adr/0017-powers.md).
 enum class Elementary : uint8_t {
   kSqrt,
   kAbs,
@@ -55,6 +59,7 @@ enum class Elementary : uint8_t {
   kAtan2,
   kExp,
   kLog,
+  kPower,
   kCount_,
 };
 
@@ -89,6 +94,7 @@ enum class Rewrite : uint8_t {
   kCompareDistance,  // a <= a + 1  ->  true
   kToRealConstant,
   kElementaryConstant,  // sqrt 4  ->  2
+  kPowerProduct,        // power(x, 3)  ->  x * x * x;  power(x, -1)  ->  1 / x
   kSelectStore,         // store(a, i, v)[j]  ->  if i = j then v else a[j]
   kStoreStore,          // store(store(a, i, v), i, w)  ->  store(a, i, w)
   kFieldRecord,         // (a, b).0  ->  a

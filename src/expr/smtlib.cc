@@ -2,12 +2,29 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "expr/substitute.h"
 
 namespace rondo::expr {
 namespace {
 
+// What SMT-LIB, Z3 and cvc5 call something themselves: quotes do not make another symbol of it.
+bool MeansSomething(std::string_view name) {
+  static const std::set<std::string_view> kWords{
+      "_",      "as",     "let",    "par",    "match",   "forall",  "exists",  "true",    "false",   "not",
+      "and",    "or",     "xor",    "ite",    "implies", "iff",     "if",      "distinct", "div",    "mod",
+      "rem",    "abs",    "to_real", "to_int", "is_int",  "select",  "store",   "const",   "map",    "default",
+      "is",     "update", "sin",    "cos",    "tan",     "csc",     "sec",     "cot",     "arcsin",  "arccos",
+      "arctan", "exp",    "log",    "sqrt",   "pi",      "pow",     "power",   "min",     "max",     "asin",
+      "acos",   "atan",   "atan2",  "sinh",   "cosh",    "tanh",    "euler",   "divisible", "iand",  "pow2",
+      "lambda", "choice", "tuple",  "Bool",   "Int",     "Real",    "Array",   "String",  "Set",     "Tuple",
+      "assert", "push",   "pop",    "exit",   "echo",    "reset"};
+  return kWords.contains(name);
+}
+
 std::string Quote(std::string_view name) {
+  if (MeansSomething(name)) return fmt::format("|{} |", name);
   const bool plain =
       !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
       name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") ==
@@ -29,6 +46,8 @@ std::string NumberText(const Arena& arena, TermId t) {
 
 }  // namespace
 
+std::string Quoted(std::string_view name) { return Quote(name); }
+
 std::string SmtPrinter::SortName(SortId id) const {
   const Sort& s = arena_.sort(id);
   if (s.kind == SortKind::kArray)
@@ -39,7 +58,7 @@ std::string SmtPrinter::SortName(SortId id) const {
 
 std::string SmtPrinter::FieldName(SortId record, uint32_t field) const {
   const Sort& s = arena_.sort(record);
-  return Quote(fmt::format("{}.{}", s.name, s.names[field]));
+  return Quote(fmt::format("field {}.{}", s.name, s.names[field]));
 }
 
 std::string SmtPrinter::Print(TermId t, bool definition) const {
@@ -252,7 +271,10 @@ std::string ToSmtLib(const Arena& arena, std::span<const SmtAssertion> assertion
     VisitPostorder(arena, assertion.formula, local, [&](TermId t) { needed.push_back(t); });
     for (const TermId t : needed) {
       if (arena.args(t).empty() || uses[t] < 2 || arena.IsOpen(t) || !defined.insert(t).second) continue;
-      const std::string name = fmt::format("$t{}", serial++);
+      std::string name;
+      do {
+        name = fmt::format("$t{}", serial++);
+      } while (arena.IsDeclared(name));
       body += fmt::format("(define-fun {} () {} {})\n", name, printer.SortName(arena.sort_of(t)),
                           printer.Print(t, true));
       printer.Define(t, name);

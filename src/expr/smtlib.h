@@ -36,6 +36,9 @@ class SmtPrinter {
   std::unordered_map<TermId, std::string> names_;
 };
 
+/// A name as a symbol: quoted where it must be, and never one that solvers have a meaning for.
+std::string Quoted(std::string_view name);
+
 /// A complete SMT-LIB 2.6 script: sorts, symbols, the assertions with shared subterms defined once,
 /// `(check-sat)`. Lists are an uninterpreted sort with uninterpreted functions; their meaning must be
 /// asserted (`ListAxioms`). Deterministic: equal assertions in equal order give equal text.

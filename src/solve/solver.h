@@ -47,6 +47,8 @@ struct Sat {
   std::map<expr::TermId, Value> values;
   /// False: a solution was proved to exist; the values are near it.
   bool exact = true;
+  /// Numbers near the values that are irrational.
+  std::map<expr::TermId, expr::Rational> near{};
 };
 
 /// The engine gave up.

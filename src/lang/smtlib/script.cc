@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <set>
+#include <algorithm>
+#include <map>
 
 namespace rondo::lang::smtlib {
 namespace {
@@ -42,6 +43,7 @@ class ScriptReader {
         {"push", &ScriptReader::Levels},
         {"pop", &ScriptReader::Levels},
         {"check-sat", &ScriptReader::Simple},
+        {"check-sat-assuming", &ScriptReader::Assuming},
         {"get-model", &ScriptReader::Simple},
         {"reset", &ScriptReader::Simple},
         {"reset-assertions", &ScriptReader::Simple},
@@ -92,9 +94,9 @@ class ScriptReader {
     }
     const auto sort = terms_.ReadSort(e.items[sort_at]);
     if (!sort || !New(e.items[1])) return;
-    const TermId variable = arena_.Variable(arena_.Declare(e.items[1].text, {}, *sort));
+    const TermId variable = Variable(e.items[1].text, *sort);
     terms_.Declare(e.items[1], variable);
-    script_.variables.push_back(variable);
+    Add({Command::Kind::kDeclare, e.span, {variable}, 1, ""});
     if (!bounded) return;
     const SExpr& bounds = e.items.back();
     if (bounds.items.size() != 2 || *sort == arena_.Bool())
@@ -109,13 +111,24 @@ class ScriptReader {
          ""});
   }
 
+  // A name may come again, after `(reset)` or `(pop)`, with the same sort or another one.
+  TermId Variable(const std::string& name, expr::SortId sort) {
+    for (const TermId v : script_.variables) {
+      if (script_.NameOf(v) == name && arena_.sort_of(v) == sort) return v;
+    }
+    const TermId variable = arena_.Variable(arena_.Fresh(name, {}, sort));
+    if (script_.NameOf(variable) != name) script_.names[variable] = name;
+    script_.variables.push_back(variable);
+    return variable;
+  }
+
   bool New(const SExpr& name) {
     if (TermReader::IsReserved(name.text)) {
       diagnostics_.Report(Kind::kSmtUndeclared, name.span,
                           fmt::format("`{}` has a meaning already", name.text));
       return false;
     }
-    if (names_.insert(name.text).second) return true;
+    if (names_.emplace(name.text, depth_).second) return true;
     diagnostics_.Report(Kind::kSmtUndeclared, name.span, fmt::format("`{}` is declared twice", name.text));
     return false;
   }
@@ -172,20 +185,40 @@ class ScriptReader {
       return;
     }
     depth_ = push ? depth_ + levels : depth_ - levels;
+    std::erase_if(names_, [this](const auto& entry) { return entry.second > depth_; });
     Add({push ? Command::Kind::kPush : Command::Kind::kPop, e.span, {}, levels, ""});
   }
 
   void Simple(const SExpr& e) {
     const std::string& head = e.items[0].text;
     if (e.items.size() != 1) return Malformed(e, fmt::format("({})", head));
-    if (head == "reset" || head == "reset-assertions") depth_ = 0;
+    if (head == "reset" || head == "reset-assertions") {
+      depth_ = 0;
+      names_.clear();
+    }
+    if (head == "reset") {
+      terms_.Forget();
+      script_.precision.reset();
+    }
     Add({head == "check-sat"   ? Command::Kind::kCheckSat
          : head == "get-model" ? Command::Kind::kGetModel
-                               : Command::Kind::kReset,
+         : head == "reset"     ? Command::Kind::kReset
+                               : Command::Kind::kResetAssertions,
          e.span,
          {},
          1,
          ""});
+  }
+
+  void Assuming(const SExpr& e) {
+    if (e.items.size() != 2 || !e.items[1].IsList())
+      return Malformed(e, "(check-sat-assuming (formula ...))");
+    Command command{Command::Kind::kCheckSat, e.span, {}, 1, ""};
+    for (const SExpr& literal : e.items[1].items) {
+      command.terms.push_back(terms_.ReadFormula(literal));
+      if (!command.terms.back().valid()) return;
+    }
+    Add(std::move(command));
   }
 
   void Values(const SExpr& e) {
@@ -212,11 +245,16 @@ class ScriptReader {
   diag::Diagnostics& diagnostics_;
   const Extension& extension_;
   TermReader terms_;
-  std::set<std::string> names_;
+  std::map<std::string, size_t> names_;  // and the level at which they were declared
   size_t depth_ = 0;
 };
 
 }  // namespace
+
+std::string Script::NameOf(TermId variable) const {
+  const auto it = names.find(variable);
+  return it == names.end() ? arena.symbol(arena.symbol_of(variable)).name : it->second;
+}
 
 void ReadScript(const diag::SourceSet& sources, diag::FileId file, Script& script,
                 diag::Diagnostics& diagnostics, const Extension& extension) {

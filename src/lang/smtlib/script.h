@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,10 +15,21 @@
 namespace rondo::lang::smtlib {
 
 struct Command {
-  enum class Kind : uint8_t { kAssert, kPush, kPop, kCheckSat, kGetModel, kGetValue, kEcho, kReset };
+  enum class Kind : uint8_t {
+    kDeclare,
+    kAssert,
+    kPush,
+    kPop,
+    kCheckSat,
+    kGetModel,
+    kGetValue,
+    kEcho,
+    kResetAssertions,
+    kReset
+  };
   Kind kind;
   diag::Span span;
-  std::vector<expr::TermId> terms;  ///< kAssert: one; kGetValue: any number
+  std::vector<expr::TermId> terms;  ///< kDeclare, kAssert: one; kGetValue: any number; kCheckSat: what is assumed
   size_t levels = 1;                ///< kPush, kPop
   std::string text;                 ///< kEcho
 };
@@ -25,15 +37,19 @@ struct Command {
 struct Script {
   expr::Arena arena;
   std::vector<Command> commands;            ///< up to `(exit)`
-  std::vector<expr::TermId> variables;      ///< in order of declaration
+  std::vector<expr::TermId> variables;      ///< all that are ever declared, each once
   std::optional<expr::Rational> precision;  ///< of `(set-option :precision p)`
+  /// What the script calls a variable that had to get another name in the arena.
+  std::map<expr::TermId, std::string> names;
+  std::string NameOf(expr::TermId variable) const;
 };
 
 /// Reads a command that is none of SMT-LIB's; false: it does not know it either.
 using Extension = std::function<bool(const SExpr& command, TermReader& terms)>;
 
 /// Reads a script. Everything that is wrong is reported; then the script must not be run. Declarations and
-/// definitions are global: `pop` does not remove them.
+/// definitions stay in sight after `pop` and `(reset-assertions)`, but their names can be declared again; after
+/// `(reset)` they are gone.
 void ReadScript(const diag::SourceSet& sources, diag::FileId file, Script& script,
                 diag::Diagnostics& diagnostics, const Extension& extension = {});
 

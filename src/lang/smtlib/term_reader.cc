@@ -301,26 +301,18 @@ std::optional<expr::TermId> TermReader::Arithmetic(const SExpr& e, const Args& g
   return result;
 }
 
-// x^n by products, x^(n/2) by roots, otherwise exp(y log x).
+// x^(n/2), written with a number, is a power of a root; anything else is `power`.
 expr::TermId TermReader::Power(const SExpr& e, TermId base, TermId exponent) {
   if (arena_.IsNumber(exponent)) {
-    const Rational twice = arena_.number(exponent) + arena_.number(exponent);
-    const bool half = !arena_.number(exponent).IsInteger();
-    if (twice.IsInteger()) {
-      const double count = twice.ToDouble() < 0 ? -twice.ToDouble() : twice.ToDouble();
-      if (count > 128) {
-        diagnostics_.Report(Kind::kSmtUnsupported, e.span, "exponents beyond 64 are not supported");
-        return {};
-      }
-      TermId result = half ? arena_.Apply(Elementary::kSqrt, {base}) : base;
-      const TermId factor = result;
-      const int power = static_cast<int>(half ? count : count / 2);
-      if (power == 0) return Number(Rational(1));
-      for (int i = 1; i < power; ++i) result = arena_.Mul(result, factor);
-      return arena_.number(exponent) < Rational(0) ? arena_.Divide(Number(Rational(1)), result) : result;
+    const Rational& y = arena_.number(exponent);
+    if (y > Rational(64) || y < Rational(-64)) {
+      diagnostics_.Report(Kind::kSmtUnsupported, e.span, "exponents beyond 64 are not supported");
+      return {};
     }
+    if (!y.IsInteger() && (y + y).IsInteger())
+      return arena_.Apply(Elementary::kPower, {arena_.Apply(Elementary::kSqrt, {base}), Number(y + y)});
   }
-  return arena_.Apply(Elementary::kExp, {arena_.Mul(exponent, arena_.Apply(Elementary::kLog, {base}))});
+  return arena_.Apply(Elementary::kPower, {base, exponent});
 }
 
 std::optional<expr::TermId> TermReader::Function(const SExpr& e, const Args& given) {
@@ -331,7 +323,7 @@ std::optional<expr::TermId> TermReader::Function(const SExpr& e, const Args& giv
       {"tan", Elementary::kTan},     {"asin", Elementary::kAsin},   {"arcsin", Elementary::kAsin},
       {"acos", Elementary::kAcos},   {"arccos", Elementary::kAcos}, {"atan", Elementary::kAtan},
       {"arctan", Elementary::kAtan}, {"atan2", Elementary::kAtan2}, {"arctan2", Elementary::kAtan2},
-      {"exp", Elementary::kExp},     {"log", Elementary::kLog}};
+      {"exp", Elementary::kExp},     {"log", Elementary::kLog},     {"power", Elementary::kPower}};
   const bool hyperbolic = head == "sinh" || head == "cosh" || head == "tanh";
   const auto it = kFunctions.find(head);
   const bool power = head == "^" || head == "pow";

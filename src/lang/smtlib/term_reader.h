@@ -31,6 +31,11 @@ class TermReader {
   /// Numbers, constants and operators of the language: they cannot be declared.
   static bool IsReserved(const std::string& name);
   void Declare(const SExpr& name, expr::TermId variable);
+  /// Forgets every declaration and definition.
+  void Forget() {
+    variables_.clear();
+    macros_.clear();
+  }
   void Define(const SExpr& name, Macro macro);
 
  private:

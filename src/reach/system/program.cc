@@ -209,6 +209,7 @@ class Compiler {
         return Push({CodeOp::kExp, a});
       case Elementary::kLog:
         return Push({CodeOp::kLog, a});
+      case Elementary::kPower:  // no language of robots makes one
       case Elementary::kCount_:
         break;
     }

@@ -55,7 +55,7 @@ class Checker {
       root.facts.Add(normal_.Literal(Normal::Minus(x, Normal::ConstantPoly(Rational(1))), kBelow | kEven));
     }
     for (const Command& c : certificate_.script.commands) {
-      if (c.kind == Command::Kind::kCheckSat) continue;
+      if (c.kind == Command::Kind::kCheckSat || c.kind == Command::Kind::kDeclare) continue;
       at = c.span;
       if (c.kind != Command::Kind::kAssert) throw Rejection("a certificate has no such command");
       root.facts.Add(normal_.Of(c.terms[0]));
@@ -107,6 +107,13 @@ class Checker {
       case Step::Kind::kSquares:
         Require(branch, step.terms[0]);
         return Squares(branch.facts, step.terms[0]);
+      case Step::Kind::kPeriod: {
+        if (arena_.op(step.terms[0]) != Op::kVariable || !arena_.IsNumber(step.terms[1]) ||
+            !arena_.IsNumber(step.terms[2]))
+          throw Rejection("a variable and two numbers should stand here");
+        return branch.facts.AddWindow(normal_.Variable(step.terms[0]), arena_.number(step.terms[1]),
+                                      arena_.number(step.terms[2]));
+      }
       case Step::Kind::kFact:
         Require(branch, step.terms[0]);
         branch.required.push_back(&step);

@@ -175,6 +175,36 @@ Enclosure Power(const Enclosure& a, unsigned n) {
   return r;
 }
 
+// For a > 0 it is monotone in a for each b, and in b for each a, so that its ends lie in corners; at the corners
+// where a is 0 or infinite, MPFR gives the limits.
+Enclosure RealPower(const Enclosure& a, const Enclosure& b) {
+  if (a.IsEmpty() || b.IsEmpty()) return Enclosure::Empty();
+  if (mpfr_sgn(a.lo_) < 0) {
+    // A whole exponent of a negative base, if it is the only one.
+    const bool whole = mpfr_equal_p(b.lo_, b.hi_) != 0 && mpfr_integer_p(b.lo_) != 0 && mpfr_sgn(b.lo_) >= 0 &&
+                       mpfr_cmp_ui(b.lo_, 1000) <= 0;
+    if (!whole) return Enclosure();
+    const auto n = static_cast<unsigned>(mpfr_get_ui(b.lo_, MPFR_RNDN));
+    return n == 0 ? Enclosure::Interval(1, 1) : Power(a, n);
+  }
+  const bool zero = a.HasZero();
+  if (zero && mpfr_sgn(b.lo_) < 0) return Enclosure();
+  Enclosure r = Enclosure::Empty();
+  if (zero && mpfr_sgn(b.hi_) > 0) r.Join(Enclosure::Interval(0, 0));
+  if (b.HasZero()) r.Join(Enclosure::Interval(1, 1));
+  if (mpfr_sgn(a.hi_) <= 0) return r;
+  Enclosure t;
+  for (const mpfr_t* base : {&a.lo_, &a.hi_}) {
+    for (const mpfr_t* exponent : {&b.lo_, &b.hi_}) {
+      mpfr_pow(t.lo_, *base, *exponent, MPFR_RNDD);
+      mpfr_pow(t.hi_, *base, *exponent, MPFR_RNDU);
+      if (mpfr_nan_p(t.lo_) != 0 || mpfr_nan_p(t.hi_) != 0) return Enclosure();
+      r.Join(t);
+    }
+  }
+  return r;
+}
+
 Enclosure Root(const Enclosure& a, unsigned n) {
   if (a.IsEmpty() || mpfr_sgn(a.hi_) < 0) return Enclosure::Empty();
   Enclosure r = a;

@@ -46,6 +46,8 @@ class Enclosure {
   friend Enclosure operator*(const Enclosure& a, const Enclosure& b);
   friend Enclosure operator/(const Enclosure& a, const Enclosure& b);  ///< the line if `b` has 0
   friend Enclosure Power(const Enclosure& a, unsigned n);
+  /// a^b as docs/adr/0017-powers.md defines it, "some number" being any.
+  friend Enclosure RealPower(const Enclosure& a, const Enclosure& b);
   friend Enclosure Root(const Enclosure& a, unsigned n);  ///< of the part that is not negative
   friend Enclosure Abs(const Enclosure& a);
   friend Enclosure Min(const Enclosure& a, const Enclosure& b);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solve/certify/periodic.h"
+
 namespace rondo::solve::certify {
 
 using expr::Elementary;
@@ -166,6 +168,32 @@ bool Facts::Known(FormulaId id) const {
       return std::ranges::any_of(f.parts, [this](FormulaId p) { return Known(p); });
   }
   return false;
+}
+
+void Facts::AddWindow(AtomId variable, const Rational& lo, const Rational& hi) {
+  const Atom& atom = normal_->atom(variable);
+  if (atom.kind != Atom::Kind::kVariable || atom.integral)
+    throw Rejection("only a real variable has a period");
+  Periodic periodic(*normal_, variable);
+  for (const auto& [poly, range] : ranges_) {
+    if (normal_->Single(normal_->poly(poly)) != variable) {
+      if (!periodic.Look(poly)) throw Rejection("the variable occurs outside sines and cosines");
+      continue;
+    }
+    const bool both = range.lo && range.hi;
+    const bool outside = (range.lo && lo < *range.lo) || (range.hi && hi > *range.hi);
+    if (both || outside || !range.excluded.empty())
+      throw Rejection("what is known of the variable itself leaves no window");
+  }
+  for (const FormulaId f : formulas_) {
+    if (!periodic.Look(f)) throw Rejection("the variable occurs outside sines and cosines");
+  }
+  // Full turns are irrational: a window as wide as a number above is wider, which leaves room for strict bounds.
+  static const Rational kMoreThanTwoPi = *Rational::Parse("6.2831853071796");  // 2 pi = 6.28318530717958...
+  if (hi - lo < periodic.turns() * kMoreThanTwoPi) throw Rejection("the window is narrower than a period");
+  const Poly x{{Monomial{variable}, Rational(1)}};
+  Add(normal_->Literal(Normal::Minus(x, Normal::ConstantPoly(lo)), kAbove | kEven));
+  Add(normal_->Literal(Normal::Minus(x, Normal::ConstantPoly(hi)), kBelow | kEven));
 }
 
 void Facts::Substitute(AtomId variable, PolyId value) {

@@ -4,9 +4,10 @@
 #include <gmpxx.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 
-#include "expr/elementary.h"
+#include "solve/certify/known_value.h"
 
 namespace rondo::solve::certify {
 
@@ -184,7 +185,12 @@ PolyId Normal::Function(Elementary function, std::vector<PolyId> args) {
     if (const auto value = ConstantOf(poly(a))) values.push_back(*value);
   }
   if (values.size() == args.size()) {
-    if (const auto value = expr::ExactValue(function, values)) return Intern(ConstantPoly(*value));
+    if (const auto value = KnownValue(function, values)) return Intern(ConstantPoly(*value));
+  }
+  if (function == Elementary::kPower) {
+    if (const auto value = ConstantOf(poly(args[1]))) {
+      if (const auto product = WholePower(args[0], *value)) return *product;
+    }
   }
   // sqrt(f^2 e) = f sqrt(e), so that the first coefficient of e is without squares.
   if (function == Elementary::kSqrt && !poly(args[0]).empty()) {
@@ -202,6 +208,17 @@ PolyId Normal::Function(Elementary function, std::vector<PolyId> args) {
   atom.function = function;
   atom.args = std::move(args);
   return AtomPoly(std::move(atom));
+}
+
+// p^n for an integer n is a product, or its reciprocal.
+std::optional<PolyId> Normal::WholePower(PolyId base, const Rational& exponent) {
+  constexpr int64_t kMost = 64;
+  if (!exponent.IsInteger() || exponent > Rational(kMost) || exponent < Rational(-kMost)) return std::nullopt;
+  const auto n = static_cast<int64_t>(exponent.ToDouble());
+  Poly product = ConstantPoly(Rational(1));
+  for (int64_t i = 0; i < std::abs(n); ++i) product = Times(product, Poly(poly(base)));
+  const PolyId whole = Intern(std::move(product));
+  return n < 0 ? Quotient({Intern(ConstantPoly(Rational(1))), whole}) : whole;
 }
 
 PolyId Normal::Choice(FormulaId condition, PolyId then, PolyId otherwise) {

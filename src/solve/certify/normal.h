@@ -125,6 +125,7 @@ class Normal {
   FormulaId Junction(Formula::Kind kind, std::vector<FormulaId> parts);
   PolyId Function(expr::Elementary function, std::vector<PolyId> args);
   PolyId Quotient(std::vector<PolyId> args);
+  std::optional<PolyId> WholePower(PolyId base, const Rational& exponent);
   PolyId Choice(FormulaId condition, PolyId then, PolyId otherwise);
   Poly Times(const Poly& a, const Poly& b);
   void AddProduct(Poly& out, Monomial monomial, const Rational& coefficient);

@@ -36,6 +36,9 @@ class ProofReader {
                         : head == "case"  ? Step::Kind::kCase
                                           : Step::Kind::kCases;
       Add(kind, e, {terms.ReadFormula(e.items[1])});
+    } else if (head == "period") {
+      if (e.items.size() != 4) return Malformed(e, "(period variable number number)");
+      Add(Step::Kind::kPeriod, e, {terms.Read(e.items[1]), terms.Read(e.items[2]), terms.Read(e.items[3])});
     } else if (head == "identity") {
       std::vector<expr::TermId> parts;
       for (size_t i = 1; i + 1 < e.items.size(); ++i) {

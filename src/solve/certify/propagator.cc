@@ -83,6 +83,8 @@ Enclosure Propagator::Evaluate(const Node& n) const {
       return Increasing(a, mpfr_exp);
     case Elementary::kLog:
       return Log(a);
+    case Elementary::kPower:
+      return RealPower(a, b);
     case Elementary::kCount_:
       break;
   }
@@ -261,7 +263,7 @@ bool Propagator::BackwardFunction(const Node& n, const Enclosure& z) {
     case Elementary::kLog:
       return Narrow(n.a, Increasing(z, mpfr_exp));
     default:
-      return Narrow(n.a, Line()) && (n.function != Elementary::kAtan2 || Narrow(n.b, Line()));
+      return Narrow(n.a, Line()) && (expr::Arity(n.function) < 2 || Narrow(n.b, Line()));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "solve/icp/periods.h"
 #include "solve/icp/proof.h"
 #include "solve/icp/search.h"
 #include "solve/icp/verify.h"
@@ -51,7 +52,8 @@ class Decision {
 
   Status Decide(std::vector<TermId> conjuncts, const Definitions& definitions) {
     if (stop_.StopRequested()) return Status::kGaveUp;
-    const Prepared prepared = Prepare(arena_, lowered_.variables, std::move(conjuncts), definitions, proof_);
+    Prepared prepared = Prepare(arena_, lowered_.variables, std::move(conjuncts), definitions, proof_);
+    if (!prepared.contradiction) BoundAngles(arena_, lowered_.variables, prepared, proof_);
     if (prepared.contradiction) {
       ++statistics_.exact;
       if (proof_ != nullptr) proof_->Contradiction();
@@ -236,7 +238,13 @@ Answer IcpSolver::Check(const Query& query, const Budget& budget, const base::St
       return sat;
     }
     case Decision::Status::kUndecided: {
-      return DeltaSat{ToBox(decision.box(), lowered)};
+      Box box = ToBox(decision.box(), lowered);
+      double width = 0;
+      for (const auto& [variable, range] : box) width = std::max(width, range.second - range.first);
+      // Not a small box: far away, doubles are too coarse.
+      if (!(width <= options_.widest))
+        return Unknown{fmt::format("nothing could be excluded in a box of width {}", width)};
+      return DeltaSat{std::move(box)};
     }
     case Decision::Status::kGaveUp:
       break;

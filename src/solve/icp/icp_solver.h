@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "interval/batch.h"
 #include "solve/solver.h"
 
@@ -10,6 +12,8 @@ struct Options {
   unsigned jobs = 1;  ///< threads for one question
   /// A box this narrow in which nothing can be excluded is the answer `DeltaSat`.
   double precision = 1e-9;
+  /// Boxes that are wider, in some variable of the query, are `Unknown` instead.
+  double widest = std::numeric_limits<double>::infinity();
   uint64_t max_boxes = UINT64_MAX;
   bool lemmas = true;                          ///< look for rotations; off only to measure what that brings
   const interval::Kernels* kernels = nullptr;  ///< none: the best of this machine

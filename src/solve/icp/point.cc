@@ -1,6 +1,7 @@
 #include "solve/icp/point.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "expr/elementary.h"
 #include "expr/substitute.h"
@@ -20,6 +21,26 @@ Truth Not(Truth t) {
   return t == Truth::kTrue ? Truth::kFalse : t == Truth::kFalse ? Truth::kTrue : Truth::kUndecided;
 }
 
+// Angles beyond what interval arithmetic tells apart are brought near zero exactly: by whole turns, pi between
+// two rationals.
+Interval WithoutTurns(Interval a) {
+  constexpr double kLarge = 0x1p15;
+  constexpr double kLargest = 0x1p100;
+  const double size = std::max(std::fabs(a.lo), std::fabs(a.hi));
+  if (size <= kLarge || !(size < kLargest) || a.hi - a.lo > 8) return a;
+  static const Rational kLow =
+      *Rational::Parse("6.28318530717958647692528676655900576839433879875021164194988918461563281257");
+  static const Rational kHigh =
+      *Rational::Parse("6.28318530717958647692528676655900576839433879875021164194988918461563281258");
+  const Rational lo = Rational::FromDouble(a.lo);
+  const Rational hi = Rational::FromDouble(a.hi);
+  const Rational turns = (lo / kLow).Floor();
+  const bool positive = turns > Rational(0);
+  const Rational most = turns * (positive ? kHigh : kLow);
+  const Rational least = turns * (positive ? kLow : kHigh);
+  return {Enclose(lo - most).lo, Enclose(hi - least).hi};
+}
+
 Interval Apply(Elementary f, Interval a, Interval b) {
   switch (f) {
     case Elementary::kSqrt:
@@ -31,9 +52,9 @@ Interval Apply(Elementary f, Interval a, Interval b) {
     case Elementary::kMax:
       return Max(a, b);
     case Elementary::kSin:
-      return Sin(a);
+      return Sin(WithoutTurns(a));
     case Elementary::kCos:
-      return Cos(a);
+      return Cos(WithoutTurns(a));
     case Elementary::kTan:
       return Tan(a);
     case Elementary::kAsin:
@@ -48,6 +69,8 @@ Interval Apply(Elementary f, Interval a, Interval b) {
       return Exp(a);
     case Elementary::kLog:
       return Log(a);
+    case Elementary::kPower:
+      return Exp(b * Log(a));
     case Elementary::kCount_:
       break;
   }
@@ -59,6 +82,7 @@ bool InDomain(Elementary f, Interval a, Interval b) {
     case Elementary::kSqrt:
       return a.lo >= 0;
     case Elementary::kLog:
+    case Elementary::kPower:  // other values are exact, or some number
       return a.lo > 0;
     case Elementary::kAsin:
     case Elementary::kAcos:

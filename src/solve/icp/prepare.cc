@@ -230,6 +230,13 @@ class Preparation {
     return found;
   }
 
+  // How many ends of the range of a variable, perhaps with a factor, are known.
+  int BoundsOf(TermId part) const {
+    const bool scaled = arena_.op(part) == Op::kMul && arena_.IsNumber(arena_.arg(part, 0));
+    const auto it = out_.ranges.find(scaled ? arena_.arg(part, 1) : part);
+    return it == out_.ranges.end() ? 0 : (it->second.lo ? 1 : 0) + (it->second.hi ? 1 : 0);
+  }
+
   // A variable and what it equals, if `term = value` can be solved for one.
   std::optional<std::pair<TermId, TermId>> Solve(TermId term, const Rational& value) {
     const bool sum = arena_.op(term) == Op::kAdd;
@@ -239,6 +246,9 @@ class Preparation {
     } else {
       parts.push_back(term);
     }
+    // Bounds of variables are worth keeping: those go first that have none.
+    std::stable_sort(parts.begin(), parts.end(),
+                     [this](TermId a, TermId b) { return BoundsOf(a) < BoundsOf(b); });
     for (const TermId part : parts) {
       Rational coefficient(1);
       TermId variable = part;

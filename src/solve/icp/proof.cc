@@ -23,7 +23,10 @@ std::string Proof::Say(TermId term) {
     const bool scaled = arena_.op(t) == Op::kMul && arena_.IsNumber(arena_.arg(t, 0));
     const bool whole = t == term && arena_.sort_of(t) == arena_.Bool();
     if (arena_.args(t).empty() || scaled || whole || printer_.IsDefined(t)) return;
-    const std::string name = fmt::format("$p{}", names_++);
+    std::string name;
+    do {
+      name = fmt::format("$p{}", names_++);
+    } while (arena_.IsDeclared(name));
     text_ += fmt::format("(let {} {})\n", name, printer_.Print(t, true));
     printer_.Define(t, name);
   });
@@ -38,6 +41,10 @@ void Proof::Step(const char* head, TermId formula) {
 void Proof::Substitute(TermId variable, TermId value) {
   const std::string said = Say(value);
   text_ += fmt::format("(substitute {} {})\n", printer_.Print(variable, true), said);
+}
+
+void Proof::Period(TermId variable, const Rational& lo, const Rational& hi) {
+  text_ += fmt::format("(period {} {} {})\n", printer_.Print(variable, true), Say(lo), Say(hi));
 }
 
 void Proof::Squares(TermId formula) { Step("squares", formula); }

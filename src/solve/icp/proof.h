@@ -17,6 +17,7 @@ class Proof {
 
   void Substitute(TermId variable, TermId value);
   void Squares(TermId formula);
+  void Period(TermId variable, const Rational& lo, const Rational& hi);
   void Fact(TermId formula);
   /// constant + the sum of coefficient * term = 0
   void Identity(const std::vector<std::pair<Rational, TermId>>& parts, const Rational& constant);

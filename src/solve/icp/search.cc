@@ -237,6 +237,8 @@ class Worker {
     const double lo = box_[2 * v];
     const double hi = box_[2 * v + 1];
     if (tape_.variables[v].integral) return lo < hi;
+    constexpr double kFarAway = 0x1p1000;  // nothing that matters is decided out there
+    if (std::isinf(hi - lo)) return lo < kFarAway && hi > -kFarAway;
     const double size = std::max(1.0, std::min(std::fabs(lo), std::fabs(hi)));
     return hi - lo > shared_.options.precision * size;
   }

@@ -108,13 +108,8 @@ class Builder {
         return Push(NodeOp::kDiv, a, Number(args[1]));
       }
       case Op::kIte: {
-        const TermId condition = args[0];
         const uint32_t a = Number(args[1]);
-        const uint32_t b = Number(args[2]);
-        const uint32_t yes = Formula(condition);
-        const uint32_t no = Formula(Negate(arena_, condition));
-        tape_.conditions.emplace_back(yes, no);
-        return Push(NodeOp::kChoose, a, b, static_cast<uint32_t>(tape_.conditions.size() - 1));
+        return Choose(args[0], a, Number(args[2]));
       }
       case Op::kElementary:
         return Function(arena_.elementary_of(t), args);
@@ -122,6 +117,26 @@ class Builder {
         CHECK(false) << "no number: " << Name(arena_.op(t));
     }
     return 0;
+  }
+
+  uint32_t Choose(TermId condition, uint32_t a, uint32_t b) {
+    const uint32_t yes = Formula(condition);
+    const uint32_t no = Formula(Negate(arena_, condition));
+    tape_.conditions.emplace_back(yes, no);
+    return Push(NodeOp::kChoose, a, b, static_cast<uint32_t>(tape_.conditions.size() - 1));
+  }
+
+  // x^y by cases (docs/adr/0017-powers.md). Of a base that is not positive, only 0^y for y > 0 is told: the rest
+  // may be any number.
+  uint32_t Power(TermId x, TermId y) {
+    const TermId zero = arena_.Number(arena_.Real(), Rational(0));
+    tape_.partial = true;
+    const uint32_t logarithm = Push(NodeOp::kLog, Number(x));
+    const uint32_t positive = Push(NodeOp::kExp, Push(NodeOp::kMul, Number(y), logarithm));
+    const uint32_t anything = Push(NodeOp::kConstant);
+    const TermId vanishes = arena_.And(arena_.Eq(x, zero), arena_.Lt(zero, y));
+    const uint32_t rest = Choose(vanishes, Constant(Rational(0)), anything);
+    return Choose(arena_.Eq(y, zero), Constant(Rational(1)), Choose(arena_.Lt(zero, x), positive, rest));
   }
 
   uint32_t Sum(const std::vector<TermId>& parts) {
@@ -172,6 +187,7 @@ class Builder {
   }
 
   uint32_t Function(Elementary function, const std::vector<TermId>& args) {
+    if (function == Elementary::kPower) return Power(args[0], args[1]);
     const uint32_t a = Number(args[0]);
     const uint32_t b = args.size() > 1 ? Number(args[1]) : 0;
     const auto partial = [&](NodeOp op) {
@@ -205,6 +221,7 @@ class Builder {
         return Push(NodeOp::kAtan, a);
       case Elementary::kExp:
         return Push(NodeOp::kExp, a);
+      case Elementary::kPower:
       case Elementary::kCount_:
         break;
     }

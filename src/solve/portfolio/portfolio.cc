@@ -82,12 +82,17 @@ Report PortfolioSolver::Decide(const Query& query, const Budget& budget, const b
   Report report;
   const bool alone = options_.others.empty();
   const Clock::time_point start = Clock::now();
+  const base::StopToken limited = stop.WithDeadline(start + budget.time);
   icp::Options quick = options_.icp;
   if (!alone) quick.max_boxes = 20'000;
-  report.answer = icp::IcpSolver(quick).Check(query, budget, stop, report.icp);
+  report.answer = icp::IcpSolver(quick).Check(query, budget, limited, report.icp);
   report.outcomes.push_back({"icp", Describe(report.answer), Since(start)});
   if (alone || (IsDefinite(report.answer) && !options_.compare)) return report;
 
+  // What is left is for all of them.
+  Budget rest = budget;
+  rest.time -= std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start);
+  if (rest.time.count() <= 0) return report;
   std::vector<std::pair<std::string, Race::Ask>> engines;
   std::optional<Answer> known;
   if (IsDefinite(report.answer)) {
@@ -95,12 +100,12 @@ Report PortfolioSolver::Decide(const Query& query, const Budget& budget, const b
   } else {
     report.outcomes.clear();
     engines.emplace_back("icp", [&](const base::StopToken& race) {
-      return icp::IcpSolver(options_.icp).Check(query, budget, race, report.icp);
+      return icp::IcpSolver(options_.icp).Check(query, rest, race, report.icp);
     });
   }
   for (const Solver* other : options_.others)
     engines.emplace_back(
-        other->name(), [&, other](const base::StopToken& race) { return other->Check(query, budget, race); });
+        other->name(), [&, other](const base::StopToken& race) { return other->Check(query, rest, race); });
   std::vector<Outcome> outcomes;
   auto answers = Race(options_.compare).Run(engines, stop, outcomes);
   report.outcomes.insert(report.outcomes.end(), outcomes.begin(), outcomes.end());

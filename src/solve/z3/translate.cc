@@ -91,6 +91,18 @@ const Translator::SortInfo& Translator::Sort(expr::SortId id) {
   return terms_.at(root);
 }
 
+// Z3's own power has other values where ours is some number or 1: only products are told.
+::z3::expr Translator::Power(TermId exponent, const ::z3::expr& base) {
+  constexpr int64_t kMost = 64;
+  if (!arena_.IsNumber(exponent) || !arena_.number(exponent).IsInteger() ||
+      arena_.number(exponent) > expr::Rational(kMost) || arena_.number(exponent) < expr::Rational(-kMost))
+    throw ::z3::exception("Z3 does not know this power");
+  const auto n = static_cast<int64_t>(arena_.number(exponent).ToDouble());
+  ::z3::expr product = context_.real_val(1);
+  for (int64_t i = 0; i < std::abs(n); ++i) product = product * base;
+  return n < 0 ? context_.real_val(1) / product : product;
+}
+
 ::z3::expr Translator::Build(TermId t, const ::z3::expr_vector& args) {
   const expr::Term& term = arena_.term(t);
   const auto arg = [&](unsigned i) { return args[static_cast<int>(i)]; };
@@ -147,6 +159,8 @@ const Translator::SortInfo& Translator::Sort(expr::SortId id) {
           return ::z3::ite(arg(0) <= arg(1), arg(0), arg(1));
         case expr::Elementary::kMax:
           return ::z3::ite(arg(0) >= arg(1), arg(0), arg(1));
+        case expr::Elementary::kPower:
+          return Power(arena_.arg(t, 1), arg(0));
         default:
           // Caught where other errors of Z3 are.
           throw ::z3::exception("Z3 does not know this function of reals");
@@ -169,6 +183,13 @@ const Translator::SortInfo& Translator::Sort(expr::SortId id) {
   }
   CHECK(false);
   return context_.bool_val(false);
+}
+
+std::optional<expr::Rational> Translator::Near(const ::z3::expr& value) {
+  if (!value.is_algebraic() || value.is_numeral()) return std::nullopt;
+  constexpr unsigned kDigits = 20;
+  const ::z3::expr below(context_, Z3_get_algebraic_number_lower(context_, value, kDigits));
+  return expr::Rational::Parse(Z3_get_numeral_string(context_, below));
 }
 
 expr::Value Translator::Read(const ::z3::expr& value, expr::SortId id) {

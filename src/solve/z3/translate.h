@@ -2,6 +2,7 @@
 
 #include <z3++.h>
 
+#include <optional>
 #include <unordered_map>
 
 #include "expr/arena.h"
@@ -16,6 +17,8 @@ class Translator {
 
   ::z3::expr operator()(expr::TermId term);
 
+  /// A rational number near an evaluated expression that is an irrational algebraic number; else nothing.
+  std::optional<expr::Rational> Near(const ::z3::expr& value);
   /// The value of an evaluated expression of this sort.
   /// Throws z3::exception when it is not a value, e.g. an irrational algebraic number.
   expr::Value Read(const ::z3::expr& value, expr::SortId sort);
@@ -29,6 +32,7 @@ class Translator {
   const SortInfo& Sort(expr::SortId id);
   ::z3::func_decl Function(expr::SymbolId id);
   ::z3::func_decl ListFunction(expr::TermId term);
+  ::z3::expr Power(expr::TermId exponent, const ::z3::expr& base);
   ::z3::expr Build(expr::TermId term, const ::z3::expr_vector& args);
   ::z3::expr_vector Args(expr::TermId term);
 

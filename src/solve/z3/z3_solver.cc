@@ -4,8 +4,11 @@
 #include <z3++.h>
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "solve/z3/translate.h"
@@ -13,47 +16,79 @@
 namespace rondo::solve::z3 {
 namespace {
 
-// Interrupts the context when the token asks for it or its deadline passes: Z3 does not keep its own
-// time-outs in all of its loops.
-class Watchdog {
+// How long Z3 may go on after it was asked to stop.
+constexpr std::chrono::milliseconds kGrace{300};
+
+std::atomic<bool> abandoned{false};
+
+/// One question on a thread of its own. Z3 keeps no time-out in some of its loops, and does not always heed an
+/// interrupt: then the thread is left behind, with all that it works on.
+class Job : public std::enable_shared_from_this<Job> {
  public:
-  Watchdog(::z3::context& context, const base::StopToken& stop)
-      : thread_([this, &context, &stop] {
-          std::unique_lock lock(mutex_);
-          while (!wake_.wait_for(lock, std::chrono::milliseconds(50), [this] { return done_; })) {
-            if (stop.StopRequested()) context.interrupt();
-          }
-        }) {}
-  Watchdog(const Watchdog&) = delete;
-  Watchdog& operator=(const Watchdog&) = delete;
-  ~Watchdog() {
-    {
-      const std::scoped_lock lock(mutex_);
-      done_ = true;
+  explicit Job(const expr::Arena& arena) : translate(arena, context) {}
+
+  // Whatever refers to the context lives as long as the thread.
+  ::z3::context context;
+  ::z3::solver solver{context, ::z3::solver::simple()};
+  ::z3::expr_vector assumptions{context};
+  Translator translate;
+  std::map<std::string, ::z3::expr> literals;
+
+  /// nullopt: it did not end in time.
+  std::optional<::z3::check_result> Check(const base::StopToken& stop) {
+    std::thread([job = shared_from_this()] { job->Run(); }).detach();
+    std::unique_lock lock(mutex_);
+    std::optional<base::StopToken::Clock::time_point> asked;
+    while (!wake_.wait_for(lock, std::chrono::milliseconds(20), [this] { return done_; })) {
+      const auto now = base::StopToken::Clock::now();
+      if (!stop.StopRequested()) continue;
+      if (!asked) asked = now;
+      if (now - *asked > kGrace) {
+        abandoned = true;
+        return std::nullopt;
+      }
+      context.interrupt();
     }
-    wake_.notify_one();
-    thread_.join();
+    if (!failure_.empty()) throw ::z3::exception(failure_.c_str());
+    return result_;
   }
 
  private:
+  void Run() {
+    ::z3::check_result result = ::z3::unknown;
+    std::string failure;
+    try {
+      result = solver.check(assumptions);
+    } catch (const ::z3::exception& e) {
+      failure = e.msg();
+    }
+    const std::scoped_lock lock(mutex_);
+    result_ = result;
+    failure_ = failure;
+    done_ = true;
+    wake_.notify_one();
+  }
+
   std::mutex mutex_;
   std::condition_variable wake_;
   bool done_ = false;
-  std::thread thread_;
+  ::z3::check_result result_ = ::z3::unknown;
+  std::string failure_;
 };
 
 Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop) {
-  ::z3::context context;
-  ::z3::solver solver(context, ::z3::solver::simple());
+  const auto job = std::make_shared<Job>(*query.arena);
+  ::z3::context& context = job->context;
+  ::z3::solver& solver = job->solver;
   ::z3::params parameters(context);
   parameters.set("timeout", static_cast<unsigned>(std::max<int64_t>(1, budget.time.count())));
   parameters.set("core.minimize", false);  // a third of the time for little
   parameters.set("ctrl_c", false);  // the signal handler of Z3 is not made for several threads; ours is
   solver.set(parameters);
   const base::StopToken limited = stop.WithDeadline(base::StopToken::Clock::now() + budget.time);
-  Translator translate(*query.arena, context);
-  std::map<std::string, ::z3::expr> literals;
-  ::z3::expr_vector assumptions(context);
+  Translator& translate = job->translate;
+  std::map<std::string, ::z3::expr>& literals = job->literals;
+  ::z3::expr_vector& assumptions = job->assumptions;
   std::map<unsigned, std::string> group_of;
   for (const Assertion& assertion : query.assertions) {
     const ::z3::expr formula = translate(assertion.formula);
@@ -70,12 +105,12 @@ Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop
     }
     solver.add(::z3::implies(it->second, formula));
   }
-  ::z3::check_result result = ::z3::unknown;
-  {
-    const Watchdog watchdog(context, limited);
-    result = solver.check(assumptions);
+  const std::optional<::z3::check_result> result = job->Check(limited);
+  if (!result) {
+    if (stop.cancelled()) return Unknown{"interrupted"};
+    return Unknown{fmt::format("time-out after {} ms", budget.time.count())};
   }
-  switch (result) {
+  switch (*result) {
     case ::z3::unsat: {
       Unsat unsat;
       for (const ::z3::expr& literal : solver.unsat_core()) unsat.core.push_back(group_of.at(literal.id()));
@@ -87,7 +122,12 @@ Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop
       const ::z3::model model = solver.get_model();
       for (const expr::TermId t : query.wanted) {
         try {
-          sat.values.emplace(t, translate.Read(model.eval(translate(t), true), query.arena->sort_of(t)));
+          const ::z3::expr value = model.eval(translate(t), true);
+          if (const auto near = translate.Near(value)) {
+            sat.near.emplace(t, *near);
+          } else {
+            sat.values.emplace(t, translate.Read(value, query.arena->sort_of(t)));
+          }
         } catch (const ::z3::exception&) {
           // No finite value, such as a root: the term stays without one.
         }
@@ -105,6 +145,8 @@ Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop
 }
 
 }  // namespace
+
+bool LeftBehind() { return abandoned; }
 
 std::string Z3Solver::name() const {
   unsigned major = 0;
