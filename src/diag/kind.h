@@ -91,6 +91,7 @@ enum class Kind : uint8_t {
   kKoordUnknownType,
   kKoordUnknownMember,
   kKoordAmbiguousPort,
+  kKoordUnknownFunction,
   // Koord: types.
   kKoordTypeMismatch,
   kKoordNotBoolean,

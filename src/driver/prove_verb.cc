@@ -94,15 +94,18 @@ int Run(const Options& options) {
   }
   if (report.rows.empty()) return finish_early(kRejected);
   std::vector<Reached> reached;
-  if (options.reach > 0) {
+  {
     ProgressLine line;
-    ExplorationOptions exploration;
-    const InterruptScope interrupt(exploration.stop);
-    exploration.progress = [&](const explore::SearchOptions::Progress& p) {
+    ReachRequest request;
+    if (options.reach > 0) request.rounds = options.reach;
+    if (options.robots > 0) request.robots = static_cast<size_t>(options.robots);
+    request.file = options.file;
+    request.spec = options.spec;
+    const InterruptScope interrupt(request.exploration.stop);
+    request.exploration.progress = [&](const explore::SearchOptions::Progress& p) {
       line.Show(fmt::format("[reach] {} states, frontier {}, depth {}", p.states, p.frontier, p.depth));
     };
-    reached = SearchWitnesses(model, report, options.reach, options.file, options.spec, exploration,
-                              session.diagnostics);
+    reached = SearchWitnesses(model, report, request, session.diagnostics);
   }
   const std::vector<std::string> discharged =
       Discharge(*loaded, session, cache, options.file, report.assumed);
@@ -186,7 +189,7 @@ void AddProveVerb(CLI::App& app, int& status) {
   verb.Option("--svg", options->svg,
               "draw the scene of the first collision or region that fails: from above and from the side");
   verb.Option("--reach", options->reach,
-              "for what is not inductive: search so many rounds for a run that violates it")
+              "search so many rounds for runs that violate what is not inductive or could not be decided")
       .Between(1U, 1'000'000U);
   verb.Flag("--no-certify", options->no_certify, "do not write and check certificates of choreographies");
   verb.Flag("--no-cache", options->no_cache, "neither use nor fill the proof cache");

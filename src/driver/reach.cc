@@ -35,55 +35,135 @@ void Adopt(const koord::Model& model, const koord::WitnessState& witness, Explor
   }
 }
 
-}  // namespace
+/// Searches the runs of one team for one that violates an invariant.
+class Search {
+ public:
+  Search(const koord::Model& model, const ReachRequest& request, diag::Diagnostics& diagnostics)
+      : model_(model), request_(request), diagnostics_(diagnostics) {}
 
-std::vector<Reached> SearchWitnesses(const koord::Model& model, koord::Report& report, uint32_t rounds,
-                                     const std::string& file, const std::string& spec,
-                                     const ExplorationOptions& given, diag::Diagnostics& diagnostics) {
-  std::vector<Reached> result;
-  for (koord::Row& row : report.rows) {
-    if (row.verdict != koord::Verdict::kNotInductive || !row.witness) continue;
-    ExplorationOptions options = given;
-    options.rounds = rounds;
-    options.only = static_cast<size_t>(&row - report.rows.data());  // rows are invariants, in their order
-    Adopt(model, *row.witness, options);
+  Reached NotInductive(koord::Row& row, size_t invariant) {
+    ExplorationOptions options = Options(invariant, request_.rounds.value_or(kRounds));
+    Adopt(model_, *row.witness, options);
     const auto robots = static_cast<size_t>(row.witness->robots);
+    Reached reached = One(row, robots, options);
+    if (!reached.text.empty()) return reached;
+    reached.text = Nothing(row.name, fmt::format("N = {}", robots), options);
+    if (last_.search.ending == explore::Ending::kComplete)
+      reached.text = fmt::format(
+          "{}: no run violates it for N = {} with these values ({} states): a further invariant may exclude the "
+          "state",
+          row.name, robots, last_.search.states);
+    return reached;
+  }
+
+  // Teams of one to three robots, or of as many as were asked about.
+  Reached Undecided(koord::Row& row, size_t invariant) {
+    ExplorationOptions options = Options(invariant, request_.rounds.value_or(kRounds));
+    if (!request_.rounds) {
+      options.states = kStates;
+      options.stop = options.stop.WithDeadline(base::StopToken::Clock::now() + kTime);
+    }
+    const size_t first = request_.robots.value_or(1);
+    const size_t most = request_.robots.value_or(kTeam);
+    size_t searched = 0;
+    for (size_t robots = first; robots <= most && !options.stop.StopRequested(); ++robots) {
+      Reached reached = One(row, robots, options);
+      if (!reached.text.empty()) return reached;
+      const explore::Ending ending = last_.search.ending;
+      if (ending != explore::Ending::kComplete && ending != explore::Ending::kDepth) break;
+      searched = robots;
+    }
+    Reached reached{row.name, {}, {}, false};
+    if (searched == 0) {
+      reached.text = fmt::format("{}: {} rounds of {} robot{} are too many runs to look at", row.name,
+                                 *options.rounds, first, first == 1 ? "" : "s");
+    } else {
+      const std::string scope = first == searched ? fmt::format("N = {}", searched) : fmt::format("N <= {}", searched);
+      reached.text = Nothing(row.name, scope, options);
+    }
+    return reached;
+  }
+
+ private:
+  static constexpr uint32_t kRounds = 6;
+  static constexpr size_t kTeam = 3;
+  static constexpr uint64_t kStates = 300'000;
+  static constexpr std::chrono::milliseconds kTime{700};
+
+  ExplorationOptions Options(size_t invariant, uint32_t rounds) const {
+    ExplorationOptions options = request_.exploration;
+    options.rounds = rounds;
+    options.only = invariant;
+    return options;
+  }
+
+  std::string Nothing(const std::string& name, const std::string& scope, const ExplorationOptions& options) const {
+    return fmt::format("{}: no run of up to {} rounds violates it for {} ({} states{})", name, *options.rounds,
+                       scope, states_, last_.search.ending == explore::Ending::kDepth ||
+                                               last_.search.ending == explore::Ending::kComplete
+                                           ? ""
+                                           : ", cut off");
+  }
+
+  // Without text: nothing was found.
+  Reached One(koord::Row& row, size_t robots, const ExplorationOptions& options) {
     diag::Diagnostics found;
-    const Explored explored = Explore(model, robots, options, found);
-    Reached reached{row.name, {}, {}, explored.property == "invariant " + row.name};
-    const std::string scope = fmt::format("N = {}", robots);
-    if (explored.unusable) {
-      reached.text = fmt::format("{}: cannot be explored: {}", row.name,
+    last_ = Explore(model_, robots, options, found);
+    states_ += last_.search.states;
+    Reached reached{row.name, {}, {}, last_.property == "invariant " + row.name};
+    if (last_.unusable) {
+      reached.text = fmt::format("{}: runs cannot be searched: {}", row.name,
                                  found.all().empty() ? std::string("no reason") : found.all()[0].message);
     } else if (reached.found) {
-      // Over real numbers, a run in which doubles were rounded may not exist.
-      if (!explored.rounded) row.verdict = koord::Verdict::kRefuted;
-      for (const diag::Diagnostic& d : found.all()) {
-        if (d.kind != diag::Kind::kKoordViolated) continue;
-        auto& told = diagnostics.Report(d.kind, d.span, d.message);
-        told.label = d.label;
-        told.notes = d.notes;
-      }
-      const std::string path = DefaultRunFile(file, explored.property);
-      RunFile run{file, spec, robots, explored.property, "prove --reach", explored.run};
-      KeepParameters(run, model, {robots, options.params, options.choices, {}});
-      if (SaveRun(path, run).ok()) reached.run = path;
-      reached.text = fmt::format("{}: reachable for {}{}{}", row.name, scope,
-                                 explored.rounded ? ", where doubles are rounded" : "",
-                                 reached.run.empty() ? "" : fmt::format(": `rondo replay {}`", reached.run));
-    } else if (explored.broken) {
-      reached.text = fmt::format("{}: another property breaks first: {}", row.name, explored.property);
-    } else if (explored.search.ending == explore::Ending::kComplete) {
-      reached.text = fmt::format(
-          "{}: no run violates it for {} with these values ({} states): a further invariant "
-          "may exclude the state",
-          row.name, scope, explored.search.states);
-    } else {
-      reached.text = fmt::format("{}: no run of up to {} rounds violates it for {} ({} states{})", row.name,
-                                 rounds, scope, explored.search.states,
-                                 explored.search.ending == explore::Ending::kDepth ? "" : ", cut off");
+      Found(row, robots, options, found, reached);
+    } else if (last_.broken) {
+      reached.text = fmt::format("{}: another property breaks first: {}", row.name, last_.property);
     }
-    result.push_back(std::move(reached));
+    return reached;
+  }
+
+  void Found(koord::Row& row, size_t robots, const ExplorationOptions& options, const diag::Diagnostics& found,
+             Reached& reached) {
+    // Over real numbers, a run in which doubles were rounded may not exist.
+    if (!last_.rounded) {
+      row.verdict = koord::Verdict::kRefuted;
+      row.because.clear();
+    }
+    for (const diag::Diagnostic& d : found.all()) {
+      if (d.kind != diag::Kind::kKoordViolated) continue;
+      auto& told = diagnostics_.Report(d.kind, d.span, d.message);
+      told.label = d.label;
+      told.notes = d.notes;
+    }
+    const std::string path = DefaultRunFile(request_.file, last_.property);
+    RunFile run{request_.file, request_.spec, robots, last_.property, "prove --reach", last_.run};
+    KeepParameters(run, model_, {robots, options.params, options.choices, {}});
+    if (SaveRun(path, run).ok()) reached.run = path;
+    reached.text = fmt::format("{}: reachable for N = {}{}{}", row.name, robots,
+                               last_.rounded ? ", where doubles are rounded" : "",
+                               reached.run.empty() ? "" : fmt::format(": `rondo replay {}`", reached.run));
+  }
+
+  const koord::Model& model_;
+  const ReachRequest& request_;
+  diag::Diagnostics& diagnostics_;
+  Explored last_;
+  uint64_t states_ = 0;
+};
+
+}  // namespace
+
+std::vector<Reached> SearchWitnesses(const koord::Model& model, koord::Report& report,
+                                     const ReachRequest& request, diag::Diagnostics& diagnostics) {
+  std::vector<Reached> result;
+  for (size_t i = 0; i < model.invariants.size() && i < report.rows.size(); ++i) {
+    koord::Row& row = report.rows[i];
+    Search search(model, request, diagnostics);
+    if (row.verdict == koord::Verdict::kNotInductive && row.witness && request.rounds)
+      result.push_back(search.NotInductive(row, i));
+    if (row.verdict == koord::Verdict::kUnknown && !report.interrupted && !report.contradiction &&
+        !report.disagreement)
+      result.push_back(search.Undecided(row, i));
   }
   return result;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@
 
 namespace rondo::driver {
 
-/// What a bounded search found out about one invariant that is not inductive.
+/// What a bounded search found out about one invariant.
 struct Reached {
   std::string invariant;
   std::string text;  ///< one line for people
@@ -18,11 +19,20 @@ struct Reached {
   bool found = false;
 };
 
-/// For each invariant that is not inductive: explores the team of its counterexample, for so many rounds,
-/// with the values of its parameters and sensors where the program declares none. An invariant that a run
-/// violates becomes refuted. What is found is a diagnostic as well.
-std::vector<Reached> SearchWitnesses(const koord::Model& model, koord::Report& report, uint32_t rounds,
-                                     const std::string& file, const std::string& spec,
-                                     const ExplorationOptions& options, diag::Diagnostics& diagnostics);
+struct ReachRequest {
+  std::optional<uint32_t> rounds;  ///< none: few, and only for what could not be decided
+  std::optional<size_t> robots;    ///< if their number was fixed
+  std::string file;
+  std::string spec;
+  ExplorationOptions exploration;
+};
+
+/// Searches for runs that violate what was not proved: for an invariant that is not inductive, if `rounds` are
+/// given, the team of its counterexample, with the values of its parameters and sensors where the program
+/// declares none; for one that could not be decided, teams of one to three robots. An invariant that a run
+/// violates becomes refuted. What is found is a diagnostic as well. Without `rounds`, ends within a second for
+/// each invariant.
+std::vector<Reached> SearchWitnesses(const koord::Model& model, koord::Report& report,
+                                     const ReachRequest& request, diag::Diagnostics& diagnostics);
 
 }  // namespace rondo::driver

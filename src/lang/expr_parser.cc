@@ -283,6 +283,19 @@ std::vector<ExprId> ExprParser::ParseItems(std::string_view close) {
   return items;
 }
 
+// any q in [1, 2, 4]  |  any int in 0..5
+ExprId ExprParser::ParseAny() {
+  const Span start = Take().span;
+  std::string word(Take().text);
+  Take();
+  Depth depth(*this);
+  if (depth.TooDeep()) return Fail(start);
+  std::vector<ExprId> args{ParseSum()};
+  if (Accept("..")) args.push_back(ParseSum());
+  const Span span = start.To(pool_[args.back()].span);
+  return pool_.Add({ExprKind::kAny, span, std::move(word), std::move(args), {}});
+}
+
 ExprId ExprParser::ParsePrimary() {
   const Token token = Peek();
   switch (token.kind) {
@@ -311,6 +324,7 @@ ExprId ExprParser::ParsePrimary() {
         Take();
         return pool_.Add({ExprKind::kPid, token.span, {}, {}, {}});
       }
+      if (token.text == "any" && Peek(1).kind == TokenKind::kName && Peek(2).text == "in") return ParseAny();
       if (IsReserved(token.text)) break;
       Take();
       return pool_.Add({ExprKind::kName, token.span, std::string(token.text), {}, {}});

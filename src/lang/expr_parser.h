@@ -66,6 +66,7 @@ class ExprParser {
   ExprId ParseProduct();
   ExprId ParseUnary();
   ExprId ParsePrimary();
+  ExprId ParseAny();
   std::vector<ExprId> ParseItems(std::string_view close);
   bool ParseBinder(Binder& binder);
   ExprId Binary(std::string text, ExprId a, ExprId b);

@@ -23,6 +23,8 @@ int LevelOf(const Expr& e) {
   switch (e.kind) {
     case ExprKind::kQuantifier:
       return kQuantifierLevel;
+    case ExprKind::kAny:
+      return kSumLevel;
     case ExprKind::kUnary:
       return e.text == "not" ? kNotLevel : kUnaryLevel;
     case ExprKind::kBinary:
@@ -109,6 +111,11 @@ class Printer {
         return fmt::format("({})", Items(e, 0));
       case ExprKind::kQuantity:
         return Print(e.args[0], 0) + (e.text.empty() ? "" : " " + e.text);
+      case ExprKind::kAny: {
+        const std::string first = Print(e.args[0], kSumLevel);
+        const std::string last = e.args.size() > 1 ? ".." + Print(e.args[1], kSumLevel) : "";
+        return fmt::format("any {} in {}{}", e.text, first, last);
+      }
       case ExprKind::kQuantifier: {
         std::string binders;
         for (const Binder& b : e.binders) {

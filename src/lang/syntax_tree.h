@@ -37,6 +37,7 @@ enum class ExprKind : uint8_t {
   kTuple,       // args: items, at least 2
   kQuantifier,  // text: forall or exists; binders; args: body
   kQuantity,    // text: unit; args: a literal number
+  kAny,         // `any text in ...`; args: a list, or the first and the last whole number
 };
 
 /// `i, j in ID`: the domain is a type if `type` has a name, else the expression `domain`.

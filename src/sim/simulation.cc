@@ -187,6 +187,7 @@ class Run {
     Sense();
     koord::semantics::Machine& machine = team_->machine();
     machine.SetMemory(state_.data());
+    machine.SetChooser([this](uint64_t possibilities) { return random_() % possibilities; });
     // A robot holds its position until it is told something else.
     for (size_t r = 0; r < bodies_.size(); ++r) {
       const Point p = bodies_[r]->position();

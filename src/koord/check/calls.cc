@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "koord/check/checker.h"
+#include "lang/suggest.h"
 
 namespace rondo::koord {
 
@@ -88,6 +89,7 @@ size_t Checker::FunctionNamed(const std::string& name, size_t arity, Span span) 
   for (size_t i = 0; i < model_.functions.size(); ++i) {
     if (model_.functions[i].name == name) return i;
   }
+  UnknownFunction(name, span);
   Function function{name, {}, {}, model_.types.FreshVariable(), nullptr, true, span, -1};
   for (size_t i = 0; i < arity; ++i) {
     function.parameter_names.push_back(fmt::format("x{}", i + 1));
@@ -95,6 +97,33 @@ size_t Checker::FunctionNamed(const std::string& name, size_t arity, Span span) 
   }
   model_.functions.push_back(std::move(function));
   return model_.functions.size() - 1;
+}
+
+// A function that nothing describes: not a declaration, nor a summary, nor a body for exploration.
+void Checker::UnknownFunction(const std::string& name, Span span) {
+  if (name.find('.') != std::string::npos) return;  // a member of a type that nobody looks into
+  for (const Item& item : program_.items) {
+    if (const auto* summary = std::get_if<SummaryDef>(&item); summary != nullptr && summary->function == name) return;
+    const auto* explore = std::get_if<ExploreDef>(&item);
+    const auto describes = [&](const ExploreEntry& entry) { return entry.name == name; };
+    if (explore != nullptr && std::any_of(explore->entries.begin(), explore->entries.end(), describes)) return;
+  }
+  auto& report = diagnostics_.Report(Kind::kKoordUnknownFunction, span,
+                                     fmt::format("`{}` is declared nowhere: it may return anything", name));
+  std::vector<std::string> known;
+  for (const BuiltinName& builtin : kBuiltins) known.emplace_back(builtin.name);
+  for (const Function& f : model_.functions) known.push_back(f.name);
+  std::string near = lang::Suggest(name, known);
+  // Words of other languages for what is here.
+  static const std::map<std::string, std::string> kOtherWords{
+      {"distance", "dist"}, {"norm", "dist"}, {"midpoint", "mid"}, {"length", "len"}, {"size", "len"},
+      {"fabs", "abs"},      {"minimum", "min"}, {"maximum", "max"}, {"point", "pos"},  {"Point", "pos"}};
+  if (const auto it = kOtherWords.find(name); it != kOtherWords.end()) near = it->second;
+  if (!near.empty()) {
+    report.Help(fmt::format("did you mean `{}`?", near)).Fix(span, near);
+  } else {
+    report.Help(fmt::format("if that is meant, declare it: `def fun {}(...) -> ...`", name));
+  }
 }
 
 TypeId Checker::CallFunction(ExprId id, const lang::Expr& e, size_t index) {

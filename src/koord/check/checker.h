@@ -52,6 +52,8 @@ class Checker {
   TypeId Comparison(const lang::Expr& e, TypeId a, TypeId b);
   TypeId Membership(const lang::Expr& e, TypeId a);
   TypeId Quantifier(ExprId id, const lang::Expr& e);
+  TypeId Any(const lang::Expr& e);
+  std::optional<TypeId> TypeNamed(const std::string& word) const;
   TypeId List(const lang::Expr& e);
   void NeedBool(ExprId e, std::string_view what);
   void NeedType(ExprId e, TypeId wanted, std::string_view what);
@@ -66,6 +68,7 @@ class Checker {
   TypeId CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin);
   TypeId CallFunction(ExprId id, const lang::Expr& e, size_t function);
   TypeId CallMethod(ExprId id, const lang::Expr& e);
+  void UnknownFunction(const std::string& name, diag::Span span);
   size_t FunctionNamed(const std::string& name, size_t arity, diag::Span span);
   bool Arity(const lang::Expr& e, size_t least, size_t most, std::string_view name);
   void CheckRecursion();
@@ -115,6 +118,7 @@ class Checker {
   int loops_ = 0;
   int atomic_ = 0;
   bool old_allowed_ = false;
+  bool may_choose_ = false;  // in the statements of an event or `init`
   TypeId grid_element_;   // of a `grid(...)`, where one may stand
   bool writing_ = false;  // the target of an assignment may be an actuator
 };

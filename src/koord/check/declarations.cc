@@ -45,12 +45,16 @@ Model Checker::Run() {
   }
   function_ = -1;
   place_ = Place::kInit;
+  may_choose_ = true;
   for (const InitDef* init : model_.inits) Body(init->body);
   place_ = Place::kEvent;
   for (const EventDef* event : model_.events) {
+    may_choose_ = false;
     if (event->pre.valid()) NeedBool(event->pre, "a precondition");
+    may_choose_ = true;
     Body(event->body);
   }
+  may_choose_ = false;
   Specifications();
   CheckRecursion();
   CheckSignatures();

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "koord/check/checker.h"
 
 namespace rondo::koord {
@@ -56,6 +58,8 @@ TypeId Checker::Visit(ExprId id, const lang::Expr& e) {
     }
     case ExprKind::kQuantifier:
       return Quantifier(id, e);
+    case ExprKind::kAny:
+      return Any(e);
     case ExprKind::kQuantity:
       break;  // not part of Koord
   }
@@ -205,6 +209,42 @@ uint32_t Checker::Bind(const std::string& name, TypeId type, Span span) {
   return index;
 }
 
+// any q in [1, 2, 4]; any int in 0..5: one of these values, and nothing says which.
+TypeId Checker::Any(const lang::Expr& e) {
+  auto& types = model_.types;
+  if (!may_choose_) {
+    diagnostics_.Report(Kind::kKoordSpecScope, e.span, "only a running event can choose a value")
+        .Help("`any` belongs into `eff` or `init`, outside quantifiers; keep what was chosen in a variable");
+  }
+  TypeId element = types.integer();
+  if (e.args.size() > 1) {
+    NeedType(e.args[0], types.integer(), "the first value of a range");
+    NeedType(e.args[1], types.integer(), "the last value of a range");
+  } else {
+    const TypeId list = Expr(e.args[0]);
+    element = types.FreshVariable();
+    if (!types.Unify(list, types.List(element))) {
+      return Mismatch(exprs_[e.args[0]].span, fmt::format("`any` chooses from a list or a range such as `0..5`, not from a `{}`",
+                                                          types.Name(list)));
+    }
+  }
+  if (const auto named = TypeNamed(e.text); named && !types.Coerce(element, *named))
+    return Mismatch(e.span, fmt::format("these are values of type `{}`, not `{}`", types.Name(element), e.text));
+  return element;
+}
+
+// What a word between `any` and `in` says of the type; nothing if it is only a name.
+std::optional<TypeId> Checker::TypeNamed(const std::string& word) const {
+  const auto& types = model_.types;
+  if (const auto it = model_.named_types.find(word); it != model_.named_types.end()) return it->second;
+  if (word == "int") return types.integer();
+  if (word == "float") return types.real();
+  if (word == "bool") return types.boolean();
+  if (word == "string") return types.string();
+  if (word == "pos") return types.pos();
+  return std::nullopt;
+}
+
 TypeId Checker::Quantifier(ExprId id, const lang::Expr& e) {
   auto& types = model_.types;
   const size_t depth = scope_.size();
@@ -248,7 +288,9 @@ TypeId Checker::Quantifier(ExprId id, const lang::Expr& e) {
     domains.kinds.push_back(kind);
     domains.bindings.push_back(std::move(bound));
   }
+  const bool may_choose = std::exchange(may_choose_, false);
   NeedBool(e.args[0], fmt::format("the body of `{}`", e.text));
+  may_choose_ = may_choose;
   scope_.resize(depth);
   model_.domains[id] = std::move(domains);
   return types.boolean();

@@ -34,7 +34,7 @@ std::vector<TermId> Distances::Axioms(const std::vector<TermId>& formulas) {
   }
   const auto known = [&](TermId p, TermId q) { return pairs_.contains({std::min(p, q), std::max(p, q)}); };
   // Of a triangle, two sides are enough to speak of the third.
-  for (size_t i = 0; i < points_.size(); ++i) {
+  for (size_t i = 0; detail_ == Detail::kAll && i < points_.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {
       for (size_t k = 0; k < j && triangles_.size() < kMostTriangles; ++k) {
         const int sides = known(points_[i], points_[j]) + known(points_[i], points_[k]) + known(points_[j], points_[k]);
@@ -54,6 +54,7 @@ void Distances::OfPair(TermId p, TermId q, std::vector<TermId>& axioms) {
   const TermId zero = arena_.Number(arena_.Real(), Rational(0));
   axioms.push_back(arena_.Le(zero, d));
   axioms.push_back(arena_.Eq(arena_.Eq(d, zero), arena_.Eq(p, q)));
+  if (detail_ == Detail::kDistance) return;
   std::vector<TermId> size;
   std::vector<TermId> same;
   for (uint32_t axis = 0; axis < 3; ++axis) {
@@ -70,6 +71,29 @@ void Distances::OfPair(TermId p, TermId q, std::vector<TermId>& axioms) {
     axioms.push_back(
         arena_.Implies(arena_.And(same[(axis + 1) % 3], same[(axis + 2) % 3]), arena_.Eq(d, size[axis])));
   }
+}
+
+TermId AlongAxes(Vocabulary& vocabulary, const std::vector<TermId>& formulas) {
+  expr::Arena& arena = vocabulary.arena();
+  const expr::SymbolId dist = vocabulary.Dist();
+  std::vector<TermId> applications;
+  std::unordered_set<TermId> seen;
+  for (const TermId formula : formulas) {
+    expr::VisitPostorder(arena, formula, seen, [&](TermId t) {
+      if (arena.op(t) == Op::kApply && arena.symbol_of(t) == dist && !arena.IsOpen(t)) applications.push_back(t);
+    });
+  }
+  std::vector<TermId> all;
+  for (const TermId t : applications) {
+    std::vector<TermId> same;
+    for (uint32_t axis = 0; axis < 3; ++axis)
+      same.push_back(arena.Eq(arena.Field(arena.arg(t, 0), axis), arena.Field(arena.arg(t, 1), axis)));
+    std::vector<TermId> either;
+    for (size_t axis = 0; axis < 3; ++axis)
+      either.push_back(arena.And(same[(axis + 1) % 3], same[(axis + 2) % 3]));
+    all.push_back(arena.Or(either));
+  }
+  return arena.And(all);
 }
 
 bool Distances::IsMiddle(TermId m, TermId p, TermId q) {

@@ -17,7 +17,10 @@ namespace rondo::koord {
 /// Cost: cubic in the number of points, up to a limit.
 class Distances {
  public:
-  explicit Distances(Vocabulary& vocabulary) : vocabulary_(vocabulary), arena_(vocabulary.arena()) {}
+  /// kDistance: that it is not negative, symmetric, and zero for equal points alone.
+  enum class Detail : uint8_t { kDistance, kAll };
+  Distances(Vocabulary& vocabulary, Detail detail)
+      : vocabulary_(vocabulary), arena_(vocabulary.arena()), detail_(detail) {}
   /// What has not been said before.
   std::vector<TermId> Axioms(const std::vector<TermId>& formulas);
 
@@ -32,11 +35,16 @@ class Distances {
 
   Vocabulary& vocabulary_;
   expr::Arena& arena_;
+  Detail detail_;
   std::vector<TermId> points_;
   std::set<std::pair<TermId, TermId>> pairs_;  // with a known distance, the smaller id first
   std::set<std::pair<TermId, TermId>> said_;
   std::set<std::array<TermId, 3>> triangles_;
   std::set<std::pair<TermId, TermId>> mirrored_;
 };
+
+/// The points of each distance in `formulas` differ along one axis only. Then `Axioms` leave the distance one
+/// value, the true one: a model is a counterexample in space.
+TermId AlongAxes(Vocabulary& vocabulary, const std::vector<TermId>& formulas);
 
 }  // namespace rondo::koord

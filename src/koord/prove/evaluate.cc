@@ -176,6 +176,8 @@ TermId Executor::Eval(ExprId id) {
     }
     case ExprKind::kQuantifier:
       return Quantifier(id, e);
+    case ExprKind::kAny:
+      return Any(id, e);
     case ExprKind::kQuantity:
       break;  // not part of Koord
   }
@@ -370,6 +372,28 @@ TermId Executor::Membership(const lang::Expr& e) {
 
 TermId Executor::Junction(bool conjunction, const std::vector<TermId>& parts) {
   return conjunction ? arena_.And(parts) : arena_.Or(parts);
+}
+
+// A constant of its own for each robot, and for each time that control gets here.
+TermId Executor::Any(ExprId id, const lang::Expr& e) {
+  CHECK(frame_.effect != nullptr) << "a choice outside an event got past the checker";
+  const TermId pick = arena_.Apply(arena_.Fresh("choice", {arena_.Int()}, arena_.Int()), {frame_.robot});
+  TermId first = arena_.IntNumber(0);
+  TermId last;
+  TermId list;
+  if (e.args.size() > 1) {
+    first = Eval(e.args[0]);
+    last = Eval(e.args[1]);
+  } else {
+    list = Eval(e.args[0]);
+    last = arena_.Sub(arena_.Length(list), arena_.IntNumber(1));
+  }
+  const TermId some = arena_.Le(first, last);
+  Check(CheckKind::kChoice, exprs_[id].span, some);
+  frame_.effect->chosen =
+      arena_.And(frame_.effect->chosen,
+                 arena_.Implies(arena_.And(Reached(), some), arena_.And(arena_.Le(first, pick), arena_.Le(pick, last))));
+  return list.valid() ? arena_.At(list, pick) : pick;
 }
 
 // Over robots: each of them when N_sys is a small number, else a quantifier with its range.

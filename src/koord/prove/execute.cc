@@ -40,6 +40,7 @@ Effect Executor::Finish(State& state, Effect effect) {
 Effect Executor::Run(const EventDef& event, const View& start, TermId robot) {
   State state = StartState(start, robot);
   Effect effect;
+  effect.chosen = arena_.True();
   frame_ = Frame{&start, nullptr, robot, false, &state, &effect, {}};
   // Rule SelectEvent: the precondition is evaluated on the robot's own copy.
   const TermId guard = event.pre.valid() ? Eval(event.pre) : arena_.True();
@@ -54,6 +55,7 @@ Effect Executor::Run(const EventDef& event, const View& start, TermId robot) {
 Effect Executor::RunInit(const View& start, TermId robot) {
   State state = StartState(start, robot);
   Effect effect;
+  effect.chosen = arena_.True();
   frame_ = Frame{&start, nullptr, robot, false, &state, &effect, {}};
   effect.enabled = arena_.True();
   for (const InitDef* init : model_.inits) {

@@ -15,7 +15,7 @@
 namespace rondo::koord {
 
 /// What must hold for an operation to be defined, where control reaches it.
-enum class CheckKind : uint8_t { kIndex, kDivision, kRemove, kUnrolling, kReturn };
+enum class CheckKind : uint8_t { kIndex, kDivision, kRemove, kUnrolling, kReturn, kChoice };
 struct DefinednessCheck {
   CheckKind kind;
   diag::Span span;
@@ -43,6 +43,7 @@ struct Effect {
   TermId enabled;
   TermId locks;  ///< does it take the lock of the event?
   TermId stops;
+  TermId chosen;  ///< what `any` chooses is among its values
   std::vector<TermId> value;  ///< afterwards: its own cell of what exists for each robot, else the whole
   std::vector<SharedWrite> writes;
   std::vector<DefinednessCheck> checks;
@@ -114,6 +115,7 @@ class Executor {
   /// What `+` makes of strings does not matter to any proof, only that it is a function.
   TermId Concatenate(TermId a, TermId b);
   TermId Quantifier(ExprId id, const lang::Expr& e);
+  TermId Any(ExprId id, const lang::Expr& e);
   TermId ReadVariable(size_t variable);
   TermId ReadCell(size_t variable, TermId robot, ExprId at);
   TermId Index(ExprId id, const lang::Expr& e);

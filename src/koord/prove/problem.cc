@@ -5,7 +5,6 @@
 #include "expr/lists.h"
 #include "expr/substitute.h"
 #include "koord/check/spec_labels.h"
-#include "koord/prove/distances.h"
 #include "solve/instantiate.h"
 
 namespace rondo::koord {
@@ -100,35 +99,54 @@ Problem Problems::Ground(std::vector<Assertion> assertions, std::vector<TermId> 
 void Problems::Instantiate(Problem& problem) {
   std::vector<TermId> fallback = problem.participants;
   fallback.push_back(robot_);
-  // There always is a first robot and a last one.
-  fallback.push_back(arena_.IntNumber(0));
-  fallback.push_back(arena_.Sub(vocabulary_.robots(), arena_.IntNumber(1)));
-  Distances distances(vocabulary_);
+  // There always is a first robot and a last one: where a goal denies that somebody exists, that helps.
+  const bool denies = !problem.assertions.empty() && arena_.HasQuantifier(problem.assertions[0].formula);
+  if (denies) {
+    fallback.push_back(arena_.IntNumber(0));
+    fallback.push_back(arena_.Sub(vocabulary_.robots(), arena_.IntNumber(1)));
+  }
   for (int pass = 0; pass < 4; ++pass) {
     solve::Ground ground = 
         solve::Instantiate(arena_, problem.assertions, {{arena_.Int(), fallback}}, limits, witnesses_);
     std::vector<TermId> formulas;
     for (const Assertion& a : ground.assertions) formulas.push_back(a.formula);
-    std::vector<TermId> axioms = expr::ListAxioms(arena_, formulas, problem.lists);
-    if (vocabulary_.uses_dist()) {
-      const std::vector<TermId> more = distances.Axioms(formulas);
-      axioms.insert(axioms.end(), more.begin(), more.end());
-    }
+    const std::vector<TermId> axioms = expr::ListAxioms(arena_, formulas, problem.lists);
     problem.query.arena = &arena_;
     problem.query.assertions = std::move(ground.assertions);
     problem.complete = ground.complete;
     if (axioms.empty()) break;
     for (const TermId axiom : axioms) problem.assertions.push_back({axiom, ""});
   }
+  if (vocabulary_.uses_dist()) AddDistances(problem);
+}
+
+// What is known of distances speaks of further distances, but of no further points: soon there is no more to say.
+void Problems::AddDistances(Problem& problem) {
+  Distances known(vocabulary_, distances);
+  std::vector<TermId> formulas;
+  for (const Assertion& a : problem.query.assertions) formulas.push_back(a.formula);
+  constexpr int kPasses = 4;
+  for (int pass = 0; pass < kPasses && !formulas.empty(); ++pass) {
+    formulas = known.Axioms(formulas);
+    for (const TermId axiom : formulas) {
+      problem.query.assertions.push_back({axiom, ""});
+      problem.assertions.push_back({axiom, ""});
+    }
+  }
 }
 
 Problem Problems::Initially(size_t invariant) {
   const View& first = round_.start();
   const TermId refuted = Refute(theory_.Invariant(invariant, first));
+  return WithWitnesses(refuted, [&](const std::vector<TermId>& others) { return InitiallyFor(refuted, others); });
+}
+
+Problem Problems::InitiallyFor(TermId refuted, const std::vector<TermId>& others) {
+  const View& first = round_.start();
   std::vector<Assertion> assertions{{refuted, ""}};
   std::vector<TermId> participants = Everyone();
   if (init_) {
-    Append(assertions, init_->Relate(refuted, Everyone()));
+    Append(assertions, init_->Relate(refuted, Everyone(), others));
     Append(assertions, theory_.DeclaredValues(init_->start()));
     participants = init_->participants();
   } else {
@@ -169,10 +187,9 @@ TermId Problems::Succeeds(const std::vector<TermId>& participants) {
 // A goal that denies that somebody exists says nothing of a robot in particular. Those who may show the
 // contrary are the robots that existed before, those that participants read (`x[(w + 1) % N_sys]`), and last
 // writers: all whose state the instances mention become participants.
-Problem Problems::Step(size_t invariant, std::optional<size_t> action, bool reachable) {
-  const TermId refuted = Refute(theory_.Invariant(invariant, round_.end()));
+Problem Problems::WithWitnesses(TermId refuted, const std::function<Problem(const std::vector<TermId>&)>& state) {
   std::vector<TermId> others;
-  Problem problem = StepFor(refuted, others, action, reachable);
+  Problem problem = state(others);
   constexpr int kPasses = 2;
   constexpr size_t kMostOthers = 8;
   for (int pass = 0; pass < kPasses && arena_.HasQuantifier(refuted) && !options_.expand; ++pass) {
@@ -181,9 +198,16 @@ Problem Problems::Step(size_t invariant, std::optional<size_t> action, bool reac
       if (others.size() < kMostOthers) others.push_back(robot);
     }
     if (others.size() == before) break;
-    problem = StepFor(refuted, others, action, reachable);
+    problem = state(others);
   }
   return problem;
+}
+
+Problem Problems::Step(size_t invariant, std::optional<size_t> action, bool reachable) {
+  const TermId refuted = Refute(theory_.Invariant(invariant, round_.end()));
+  return WithWitnesses(refuted, [&](const std::vector<TermId>& others) {
+    return StepFor(refuted, others, action, reachable);
+  });
 }
 
 // Robots whose state occurs in the query and that are no participants.
@@ -193,6 +217,7 @@ std::vector<TermId> Problems::Witnesses(const Problem& problem) {
     if (!model_.variables[v].PerRobot() || model_.variables[v].function >= 0) continue;
     arrays.insert(round_.start().value[v]);
     arrays.insert(round_.end().value[v]);
+    if (init_) arrays.insert(init_->start().value[v]);
   }
   std::vector<TermId> result;
   std::unordered_set<TermId> seen;
@@ -243,7 +268,11 @@ Problem Problems::Follows(size_t invariant, const std::vector<size_t>& premises)
 
 std::vector<DefinednessCheck> Problems::ChecksAt(size_t place, TermId robot) {
   if (place >= columns()) return ChecksOfPart(static_cast<Part>(place - columns()), robot);
-  return (init_ && place == 0 ? *init_ : round_).EffectOf(place, robot).checks;
+  return EffectAt(place, robot).checks;
+}
+
+const Effect& Problems::EffectAt(size_t action, TermId robot) {
+  return (init_ && action == 0 ? *init_ : round_).EffectOf(action, robot);
 }
 
 std::vector<DefinednessCheck> Problems::ChecksOfPart(Part part, TermId robot) {
@@ -307,6 +336,7 @@ Problem Problems::DefinedAt(size_t place, const DefinednessCheck& check, TermId 
 
 Problem Problems::Undefined(size_t place, TermId undefined, TermId robot) {
   std::vector<Assertion> assertions{{undefined, ""}, {vocabulary_.IsRobot(robot), ""}};
+  if (place < columns()) assertions.push_back({EffectAt(place, robot).chosen, ""});
   if (place == 0) {
     Append(assertions, theory_.DeclaredValues(init_->start()));
     Append(assertions, theory_.PortFacts(init_->start()));

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "koord/prove/distances.h"
 #include "koord/prove/extremes.h"
 #include "koord/prove/theory.h"
 #include "solve/instantiate.h"
@@ -76,8 +78,9 @@ class Problems {
   Problem PromiseNow(size_t p);
   std::vector<Theory::Promise> promises() { return theory_.Promises(round_.settled(), round_.end(), robot_); }
 
-  /// How quantifiers are instantiated from now on.
+  /// How quantifiers are instantiated from now on, and what is said of distances.
   solve::InstantiationLimits limits;
+  Distances::Detail distances = Distances::Detail::kAll;
 
   /// The robot of the problems about one robot.
   TermId robot() const { return robot_; }
@@ -89,11 +92,15 @@ class Problems {
   const std::vector<solve::Assertion>& Everything(const View& view);
   std::vector<TermId> Everyone();
   void Instantiate(Problem& problem);
+  void AddDistances(Problem& problem);
+  Problem WithWitnesses(TermId refuted, const std::function<Problem(const std::vector<TermId>&)>& state);
+  Problem InitiallyFor(TermId refuted, const std::vector<TermId>& others);
   Problem StepFor(TermId refuted, const std::vector<TermId>& others, std::optional<size_t> action, bool reachable);
   std::vector<TermId> Witnesses(const Problem& problem);
   TermId Succeeds(const std::vector<TermId>& participants);
   TermId First(size_t action, const std::vector<TermId>& participants);
   TermId Refute(TermId goal);
+  const Effect& EffectAt(size_t action, TermId robot);
   std::vector<DefinednessCheck> ChecksOfPart(Part part, TermId robot);
   Problem Undefined(size_t place, TermId undefined, TermId robot);
   Problem Ground(std::vector<solve::Assertion> assertions, std::vector<TermId> participants);

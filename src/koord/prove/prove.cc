@@ -49,6 +49,7 @@ class Prover {
         rest.push_back(task);
     }
     Solve(rest, Effort::kMost);
+    SpellOut(rest);
     report_.interrupted = options_.stop.cancelled();
     MakeRows(problems);
     Reporter reporter(model_, options_, problems, diagnostics_, report_, witnesses_);
@@ -84,7 +85,7 @@ class Prover {
       const auto start = Clock::now();
       expr::Arena arena;
       diag::Diagnostics ignored;
-      Problems problems(arena, model_, {options_.robots, false}, ignored);
+      Problems problems(arena, model_, {options_.robots, effort == Effort::kAll}, ignored);
       const Problem problem = StateTask(task, problems, effort);
       Ask(task, problem, effort);
       task.seconds += std::chrono::duration<double>(Clock::now() - start).count();
@@ -132,6 +133,16 @@ class Prover {
     }
   }
 
+  // A team of a fixed size has finitely many robots. (That operations are defined is asked of an arbitrary one.)
+  void SpellOut(const std::vector<Task*>& tasks) {
+    if (!options_.robots || !CanExpand(model_, *options_.robots)) return;
+    std::vector<Task*> rest;
+    for (Task* task : tasks) {
+      if (!task->Proved() && task->kind != TaskKind::kDefined) rest.push_back(task);
+    }
+    Solve(rest, Effort::kAll);
+  }
+
   // For each invariant, of the first obligation that is not proved.
   void FindWitnesses() {
     std::vector<Task*> first;
@@ -146,7 +157,7 @@ class Prover {
         const std::scoped_lock lock(mutex);
         options_.progress(i, first.size(), "looking for a counterexample of " + task.name);
       }
-      const solve::Budget budget{std::min(options_.timeout, std::chrono::milliseconds(1000)), false};
+      const solve::Budget budget{std::min(options_.timeout, std::chrono::milliseconds(2000)), false};
       const auto action = task.kind == TaskKind::kInitially ? std::nullopt : std::optional(task.action);
       auto witness =
           FindWitness(model_, task.subject, action, options_.robots, *options_.solver, budget, options_.stop);
@@ -159,7 +170,7 @@ class Prover {
     solve::Budget budget{options_.timeout, true};
     // A sanity check that takes long is no reason to wait: it can only warn.
     if (!task.IsObligation()) budget.time = std::min(budget.time, std::chrono::milliseconds(2000));
-    if (effort == Effort::kMost) budget.time = std::min(budget.time, options_.timeout / 4);
+    if (effort == Effort::kMost) budget.time = std::min(budget.time, options_.timeout / 20);
     task.answer = options_.solver->Check(problem.query, budget, options_.stop);
     if (effort != Effort::kMost || !std::holds_alternative<solve::Unknown>(task.answer)) return;
     // The instances were too many or too hard: let the solver choose its own.
@@ -311,7 +322,12 @@ class Prover {
                                     [](const Row& r) { return r.verdict == Verdict::kProved; });
     if (proved && UsesFloatArithmetic(model_))
       report_.assumed.push_back("floats are exact (on robots, doubles round)");
-    report_.unconstrained = problems.theory().Unconstrained();
+    report_.unconstrained = problems.theory().External(false);
+    std::vector<std::string> functions = report_.unconstrained;
+    for (std::string& f : problems.theory().External(true)) functions.push_back(std::move(f));
+    if (proved && !functions.empty())
+      report_.assumed.push_back(
+          fmt::format("the same result for the same arguments of {}", fmt::join(functions, ", ")));
   }
 
   const Model& model_;

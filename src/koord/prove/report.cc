@@ -27,6 +27,8 @@ const char* Describe(CheckKind kind) {
       return "the list can be longer than its stated bound";
     case CheckKind::kReturn:
       return "this function can end without a value";
+    case CheckKind::kChoice:
+      return "there may be no value to choose";
   }
   return "";
 }
@@ -240,7 +242,14 @@ void Reporter::Undecided(Row& row, const Cell& cell, Span span, const Witness* c
     report.Help("state more of what the functions and ports guarantee, if this cannot happen");
   } else {
     report.Note(fmt::format("{}: {}", options_.solver->name(), cell.reason));
-    report.Help("give it more time (`--timeout 60`) or fix the number of robots (`--robots 3`)");
+    // More time helps where time was short; a number, where there is none yet.
+    const bool time = cell.reason.find("time-out") != std::string::npos;
+    const std::string_view robots = "fix the number of robots (`--robots 3`)";
+    if (!options_.robots) {
+      report.Help(time ? fmt::format("give it more time (`--timeout 60`), or {}", robots) : std::string(robots));
+    } else if (time) {
+      report.Help("give it more time (`--timeout 60`)");
+    }
   }
 }
 

@@ -53,6 +53,7 @@ const Effect& Round::EffectOf(size_t action, TermId robot) {
   effect.enabled = at(general.enabled);
   effect.locks = at(general.locks);
   effect.stops = at(general.stops);
+  effect.chosen = at(general.chosen);
   for (const TermId v : general.value) effect.value.push_back(at(v));
   for (const SharedWrite& w : general.writes) {
     effect.writes.push_back({w.variable, at(w.condition), {}});
@@ -152,7 +153,8 @@ TermId Round::StateOf(TermId r) {
   std::vector<TermId> facts;
   for (size_t a = 0; a < actions_.size(); ++a) {
     if (a == 0 && kind_ == Kind::kEvents) continue;
-    facts.push_back(arena_.Implies(Acts(r, a), EffectOf(a, r).enabled));
+    const Effect& effect = EffectOf(a, r);
+    facts.push_back(arena_.Implies(Acts(r, a), arena_.And(effect.enabled, effect.chosen)));
   }
   if (kind_ == Kind::kEvents) facts.push_back(Urgency(r));
   for (size_t v = 0; v < model_.variables.size(); ++v) {

@@ -1,9 +1,37 @@
 #include "koord/prove/task.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/check.h"
 #include "koord/check/spec_labels.h"
 
 namespace rondo::koord {
+
+namespace {
+
+// How many variables over robots stand around one another?
+int Depth(const Model& model, ExprId id) {
+  const lang::Expr& e = model.program->exprs[id];
+  int depth = 0;
+  for (const ExprId arg : e.args) depth = std::max(depth, Depth(model, arg));
+  if (const auto it = model.domains.find(id); it != model.domains.end()) {
+    for (size_t b = 0; b < it->second.kinds.size(); ++b) {
+      if (it->second.kinds[b] == DomainKind::kRobots) depth += static_cast<int>(it->second.bindings[b].size());
+    }
+  }
+  return depth;
+}
+
+}  // namespace
+
+bool CanExpand(const Model& model, int64_t robots) {
+  constexpr double kMostInstances = 1e5;
+  int depth = 1;
+  for (const InvariantDef* def : model.invariants) depth = std::max(depth, Depth(model, def->body));
+  for (const AssumeDef* def : model.assumptions) depth = std::max(depth, Depth(model, def->body));
+  return std::pow(static_cast<double>(robots), depth) <= kMostInstances;
+}
 
 std::vector<size_t> Columns(Problems& problems) {
   std::vector<size_t> result;
@@ -62,6 +90,7 @@ std::vector<Task> SplitRounds(std::vector<Task> tasks, Problems& problems) {
 }
 
 Problem StateTask(const Task& task, Problems& problems, Effort effort) {
+  problems.distances = effort == Effort::kFew ? Distances::Detail::kDistance : Distances::Detail::kAll;
   switch (effort) {
     case Effort::kFew:
       problems.limits = {.rounds = 3};
@@ -70,6 +99,7 @@ Problem StateTask(const Task& task, Problems& problems, Effort effort) {
       problems.limits = {.rounds = 5};
       break;
     case Effort::kMost:
+    case Effort::kAll:
       problems.limits = {.mode = solve::InstantiationMode::kPlaces, .rounds = 4};
       break;
   }

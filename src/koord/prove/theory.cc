@@ -208,13 +208,13 @@ std::vector<Assertion> Theory::PortPromises(Round& round, TermId robot) {
   return result;
 }
 
-std::vector<std::string> Theory::Unconstrained() const {
+std::vector<std::string> Theory::External(bool wanted) const {
   std::vector<std::string> result;
   for (const Function& f : model_.functions) {
     if (!f.external() || !f.declared || f.port >= 0) continue;
     const bool summarised = std::any_of(model_.summaries.begin(), model_.summaries.end(),
                                         [&](const SummaryDef* s) { return s->function == f.name; });
-    if (!summarised) result.push_back(f.name);
+    if (summarised == wanted) result.push_back(f.name);
   }
   return result;
 }

@@ -49,8 +49,8 @@ class Theory {
   std::vector<solve::Assertion> Invariants(const View& view);
 
   size_t FunctionOf(const SummaryDef& def) const;
-  /// External functions that are called but have no summary.
-  std::vector<std::string> Unconstrained() const;
+  /// External functions that are called; `summarised`: those with a summary, else those without.
+  std::vector<std::string> External(bool summarised) const;
 
  private:
   TermId PerRobot(ExprId e, const View& view);

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "expr/substitute.h"
+#include "koord/prove/distances.h"
 #include "koord/prove/text_table.h"
 
 namespace rondo::koord {
@@ -256,6 +257,7 @@ std::optional<Candidate> Confirm(const Problem& problem, std::vector<TermId> wan
                                  const solve::Solver& solver, solve::Budget budget,
                                  const base::StopToken& stop) {
   budget.core = false;
+  budget.time /= 4;  // of several questions
   solve::Query query = problem.query;
   query.wanted = std::move(wanted);
   // Small numbers, if there are any, are easier to read.
@@ -323,6 +325,21 @@ bool OthersCanBeCopies(const expr::Arena& arena, const Problem& problem, Problem
   });
 }
 
+// Does a quantified assertion speak of the distances of points that have no name? A model may take any function
+// for those, and nothing says that the true one would do.
+bool AllPointsHaveDistances(Problems& problems, const Problem& problem) {
+  const expr::Arena& arena = problems.vocabulary().arena();
+  const expr::SymbolId dist = problems.vocabulary().Dist();
+  bool found = false;
+  std::unordered_set<TermId> seen;
+  for (const solve::Assertion& a : problem.assertions) {
+    expr::VisitPostorder(arena, a.formula, seen, [&](TermId t) {
+      found = found || (arena.op(t) == expr::Op::kApply && arena.symbol_of(t) == dist && arena.IsOpen(t));
+    });
+  }
+  return found;
+}
+
 // A team of `n`, every quantifier over robots spelled out; or, for a large team, only those who matter.
 std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::optional<size_t> action, int64_t n,
                                bool expand, const solve::Solver& solver, const solve::Budget& budget,
@@ -336,10 +353,24 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::option
     Storyteller storyteller(model, problems, arena, invariant, problem.participants);
     const bool complete = problem.complete || (!expand && OthersCanBeCopies(arena, problem, problems));
     const std::vector<TermId> wanted = storyteller.Wanted(initial);
-    const auto found = Confirm(problem, wanted, Small(arena, wanted), complete, solver, budget, stop);
+    std::vector<solve::Assertion> small = Small(arena, wanted);
+    std::optional<Candidate> found;
+    bool distances = !problems.uses_dist();
+    if (!distances) {
+      // Distances along axes are what they are in space; of others, only some properties are known.
+      Problem aligned = problem;
+      std::vector<TermId> formulas;
+      for (const solve::Assertion& a : problem.query.assertions) formulas.push_back(a.formula);
+      const solve::Assertion along{AlongAxes(problems.vocabulary(), formulas), ""};
+      aligned.query.assertions.push_back(along);
+      aligned.assertions.push_back(along);
+      found = Confirm(aligned, wanted, small, complete, solver, budget, stop);
+      distances = found && found->confirmed && (complete || !AllPointsHaveDistances(problems, problem));
+    }
+    if (!distances) found = Confirm(problem, wanted, small, complete, solver, budget, stop);
     if (!found) return std::nullopt;
     return Witness{action,
-                   found->confirmed && !problems.uses_dist() && !problems.vocabulary().uses_texts(),
+                   found->confirmed && distances && !problems.vocabulary().uses_texts(),
                    reachable,
                    !initial && storyteller.Moved(found->sat),
                    n,
@@ -361,13 +392,14 @@ std::optional<Witness> FindWitness(const Model& model, size_t invariant, std::op
                                    std::optional<int64_t> robots, const solve::Solver& solver,
                                    const solve::Budget& budget, const base::StopToken& stop) {
   static constexpr int64_t kLargest = 8;
+  const base::StopToken limited = stop.WithDeadline(base::StopToken::Clock::now() + budget.time);
   if (robots && *robots > kLargest)
-    return TryTeam(model, invariant, action, *robots, false, solver, budget, stop);
+    return TryTeam(model, invariant, action, *robots, false, solver, budget, limited);
   std::optional<Witness> best;
   int unconfirmed = 0;
-  for (int64_t n = robots.value_or(1); n <= robots.value_or(4) && unconfirmed < 2 && !stop.StopRequested();
+  for (int64_t n = robots.value_or(1); n <= robots.value_or(4) && unconfirmed < 2 && !limited.StopRequested();
        ++n) {
-    auto witness = TryTeam(model, invariant, action, n, true, solver, budget, stop);
+    auto witness = TryTeam(model, invariant, action, n, true, solver, budget, limited);
     if (!witness) continue;
     if (witness->confirmed) return witness;
     // What could not be confirmed for two sizes will not be for a third: the functions are too much for the

@@ -85,6 +85,8 @@ enum class Op : uint8_t {
   kShow,          // pop a value of log type a; push its text
   kGridInt,
   kGridFloat,
+  kAnyItem,     // pop a list of items of a words; push one of them
+  kAnyInt,      // pop low, high; push one of them, or a number between
   kGridPos,     // pop low, high, step; push the list of points
   kJump,        // to a
   kJumpUnless,  // pop; to a if false

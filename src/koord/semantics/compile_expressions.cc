@@ -127,6 +127,15 @@ void Compiler::Gen(ExprId id) {
       return;
     case ExprKind::kQuantifier:
       return Quantifier(id, e);
+    case ExprKind::kAny:
+      for (const ExprId arg : e.args) Gen(arg);
+      span_ = e.span;
+      if (e.args.size() > 1) {
+        Emit(Op::kAnyInt);
+      } else {
+        Emit(Op::kAnyItem, Width(model_.TypeOf(id)));
+      }
+      return;
   }
   CHECK(false) << "an erroneous expression got past the checker";
 }

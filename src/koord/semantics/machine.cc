@@ -27,6 +27,7 @@ size_t Pushes(const Instruction& i) {
     case Op::kExternal:
       return i.c;
     case Op::kListAt:
+    case Op::kAnyItem:
       return i.a;
     default:
       return 3;
@@ -576,6 +577,22 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         s -= width;
         const std::string text = show_ ? show_(i->a, {s, width}) : std::string();
         *s++ = heap_.InternText(text);
+        break;
+      }
+      case Op::kAnyItem: {
+        const auto items = heap_[*--s];
+        if (items.empty()) RONDO_FAIL(kNoValue);
+        const size_t item = chooser_ ? chooser_(items.size() / i->a) : 0;
+        for (uint32_t w = 0; w < i->a; ++w) *s++ = items[item * i->a + w];
+        break;
+      }
+      case Op::kAnyInt: {
+        const int64_t high = ToInt(*--s);
+        const int64_t low = ToInt(s[-1]);
+        if (low > high) RONDO_FAIL(kNoValue);
+        const uint64_t above = static_cast<uint64_t>(high) - static_cast<uint64_t>(low);
+        if (above == std::numeric_limits<uint64_t>::max()) RONDO_FAIL(kTooLong);
+        if (chooser_) s[-1] = static_cast<Word>(static_cast<uint64_t>(low) + chooser_(above + 1));
         break;
       }
       case Op::kGridInt: {

@@ -33,6 +33,9 @@ class Machine {
     old_ = old == nullptr ? memory : old;
   }
   void SetHost(Host* host) { host_ = host; }
+  /// What `any` takes: a number below that of the possibilities. Without a chooser, the first one.
+  using Chooser = std::function<uint64_t(uint64_t possibilities)>;
+  void SetChooser(Chooser chooser) { chooser_ = std::move(chooser); }
   void SetShow(std::function<std::string(size_t, std::span<const Word>)> show) { show_ = std::move(show); }
   std::vector<Word>& params() { return params_; }
   const std::vector<Word>& params() const { return params_; }
@@ -87,6 +90,7 @@ class Machine {
   Heap& heap_;
   Host* host_ = nullptr;
   std::function<std::string(size_t, std::span<const Word>)> show_;
+  Chooser chooser_;
   std::vector<Word> params_;
   std::vector<Word> stack_;
   std::vector<Word> frame_;

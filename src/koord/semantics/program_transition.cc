@@ -4,6 +4,12 @@
 
 namespace rondo::koord::semantics {
 
+namespace {
+
+constexpr size_t kMostWays = 10'000;  // in which `any` lets one event of one robot end
+
+}  // namespace
+
 ProgramTransition::ProgramTransition(Team& team)
     : team_(team),
       effects_(team.robots()),
@@ -12,6 +18,7 @@ ProgramTransition::ProgramTransition(Team& team)
       lock_holder_(team.events().size() + 1, -1),
       acted_(team.robots()) {
   for (const EventCode& event : team.events()) any_urgent_ = any_urgent_ || event.urgent;
+  team.machine().SetChooser([this](uint64_t possibilities) { return Choose(possibilities); });
 }
 
 Effect& ProgramTransition::Next(size_t robot) {
@@ -24,9 +31,35 @@ Effect& ProgramTransition::Next(size_t robot) {
   return effect;
 }
 
+// `any` takes the first value at first, and later each of the others.
+uint64_t ProgramTransition::Choose(uint64_t possibilities) {
+  if (met_ == picks_.size()) picks_.push_back({0, possibilities});
+  return picks_[met_++].pick;
+}
+
+// The next sequence of choices; false behind the last one.
+bool ProgramTransition::NextChoices() {
+  while (!picks_.empty() && picks_.back().pick + 1 >= picks_.back().possibilities) picks_.pop_back();
+  if (picks_.empty()) return false;
+  ++picks_.back().pick;
+  return true;
+}
+
+// Once for each sequence of choices.
+void ProgramTransition::Each(const std::function<Fault*()>& run) {
+  picks_.clear();
+  size_t ways = 0;
+  do {
+    Fault* fault = run();
+    // More than anybody could look at: a fault, not fewer possibilities.
+    if (++ways == kMostWays && *fault == Fault::kNone) *fault = Fault::kTooLong;
+  } while (ways < kMostWays && NextChoices());
+}
+
 // Rule SelectEvent and the statements of the event, on the robot's own copy.
 void ProgramTransition::Run(size_t robot, uint32_t event, uint32_t entry, Effect& effect) {
   Machine& machine = team_.machine();
+  met_ = 0;
   effect.event = event;
   effect.fault = machine.Run(entry, robot, false) ? Fault::kNone : machine.fault();
   effect.fault_span = machine.fault_span();
@@ -73,9 +106,12 @@ void ProgramTransition::Prepare(std::span<const Word> state) {
           continue;
         }
       }
-      Effect& effect = Next(r);
-      effect.urgent = event.urgent;
-      Run(r, e, event.body, effect);
+      Each([&] {
+        Effect& effect = Next(r);
+        effect.urgent = event.urgent;
+        Run(r, e, event.body, effect);
+        return &effect.fault;
+      });
     }
     // An urgent event excludes those that are not.
     std::vector<Effect>& all = effects_[r];
@@ -90,41 +126,48 @@ void ProgramTransition::Prepare(std::span<const Word> state) {
 void ProgramTransition::PrepareInit(std::span<const Word> state) {
   init_ = true;
   memory_.assign(state.begin(), state.end());
-  Machine& machine = team_.machine();
-  machine.SetMemory(memory_.data());
+  team_.machine().SetMemory(memory_.data());
   for (size_t r = 0; r < team_.robots(); ++r) {
     counts_[r] = 0;
-    Effect& effect = Next(r);
-    effect.urgent = true;
-    effect.fault = Fault::kNone;
-    std::vector<Effect::Write> own;
-    // Several blocks run one after the other; each reads what the ones before it wrote.
-    std::vector<Machine::Write> undo;
-    std::vector<Machine::Unit> units;
-    for (const uint32_t entry : team_.inits()) {
-      const bool good = machine.Run(entry, r, false);
-      undo.insert(undo.end(), machine.writes().begin(), machine.writes().end());
-      for (const Machine::Unit unit : machine.units()) {
-        if (std::find(units.begin(), units.end(), unit) == units.end()) units.push_back(unit);
-      }
-      if (machine.stopped()) own.push_back({team_.layout().block(r) + team_.layout().stopped(), 1});
-      if (!good && effect.fault == Fault::kNone) {
-        effect.fault = machine.fault();
-        effect.fault_span = machine.fault_span();
-      }
-    }
-    effect.event = 0;
-    effect.locks = effect.idle = false;
-    for (const Machine::Write& w : undo) {
-      if (w.at >= team_.layout().shared_words()) effect.own.push_back({w.at, memory_[w.at]});
-    }
-    effect.own.insert(effect.own.end(), own.begin(), own.end());
-    for (const Machine::Unit unit : units) {
-      effect.shared.push_back({unit, static_cast<uint32_t>(effect.words.size())});
-      for (uint32_t k = 0; k < unit.width; ++k) effect.words.push_back(memory_[unit.at + k]);
-    }
-    for (auto it = undo.rbegin(); it != undo.rend(); ++it) memory_[it->at] = it->before;
+    Each([&] {
+      Effect& effect = Next(r);
+      RunInits(r, effect);
+      return &effect.fault;
+    });
   }
+}
+
+// Several blocks run one after the other; each reads what the ones before it wrote.
+void ProgramTransition::RunInits(size_t robot, Effect& effect) {
+  Machine& machine = team_.machine();
+  effect.event = 0;
+  effect.urgent = true;
+  effect.locks = effect.idle = false;
+  effect.fault = Fault::kNone;
+  met_ = 0;
+  bool stopped = false;
+  std::vector<Machine::Write> undo;
+  std::vector<Machine::Unit> units;
+  for (const uint32_t entry : team_.inits()) {
+    const bool good = machine.Run(entry, robot, false);
+    undo.insert(undo.end(), machine.writes().begin(), machine.writes().end());
+    for (const Machine::Unit unit : machine.units()) {
+      if (std::find(units.begin(), units.end(), unit) == units.end()) units.push_back(unit);
+    }
+    stopped = stopped || machine.stopped();
+    if (good || effect.fault != Fault::kNone) continue;
+    effect.fault = machine.fault();
+    effect.fault_span = machine.fault_span();
+  }
+  for (const Machine::Write& w : undo) {
+    if (w.at >= team_.layout().shared_words()) effect.own.push_back({w.at, memory_[w.at]});
+  }
+  if (stopped) effect.own.push_back({team_.layout().block(robot) + team_.layout().stopped(), 1});
+  for (const Machine::Unit unit : units) {
+    effect.shared.push_back({unit, static_cast<uint32_t>(effect.words.size())});
+    for (uint32_t k = 0; k < unit.width; ++k) effect.words.push_back(memory_[unit.at + k]);
+  }
+  for (auto it = undo.rbegin(); it != undo.rend(); ++it) memory_[it->at] = it->before;
 }
 
 bool ProgramTransition::AnyEnabled() const {

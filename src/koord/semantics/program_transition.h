@@ -42,6 +42,8 @@ struct LastWriter {
 class ProgramTransition {
  public:
   explicit ProgramTransition(Team& team);
+  ProgramTransition(const ProgramTransition&) = delete;
+  ProgramTransition& operator=(const ProgramTransition&) = delete;
 
   /// Finds what each robot can do in `state`. The state must stay as it is until the last `Enumerate`.
   void Prepare(std::span<const Word> state);
@@ -72,6 +74,10 @@ class ProgramTransition {
 
  private:
   void Run(size_t robot, uint32_t event, uint32_t entry, Effect& effect);
+  void RunInits(size_t robot, Effect& effect);
+  void Each(const std::function<Fault*()>& run);
+  uint64_t Choose(uint64_t possibilities);
+  bool NextChoices();
   Effect& Next(size_t robot);
   bool Choose(size_t robot, const Visit& visit);
   bool MaySkip(size_t robot) const;
@@ -91,6 +97,12 @@ class ProgramTransition {
   Team& team_;
   bool init_ = false;
   std::vector<Word> memory_;
+  struct Picked {
+    uint64_t pick;
+    uint64_t possibilities;
+  };
+  std::vector<Picked> picks_;  // by `any`, in the order in which the event that is running meets them
+  size_t met_ = 0;
   std::vector<std::vector<Effect>> effects_;  // by robot; more than `counts_` are kept for their memory
   std::vector<size_t> counts_;
   std::vector<int> choice_;

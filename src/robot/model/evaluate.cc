@@ -145,6 +145,7 @@ Value Evaluator::Visit(const Expr& e, const Scope& scope) {
     case ExprKind::kIndex:
     case ExprKind::kList:
     case ExprKind::kQuantifier:
+    case ExprKind::kAny:
       break;
   }
   diagnostics_.Report(Kind::kRobotType, e.span, "expressions about robots know nothing of this kind");
