@@ -261,7 +261,7 @@ class Lexer {
                           "not a number, and a name cannot start with a digit");
       return Emit(TokenKind::kInt, begin, at_, "0");
     }
-    if (is_float && !IsExact(text_.substr(begin, at_ - begin))) {
+    if (options_.doubles && is_float && !IsExact(text_.substr(begin, at_ - begin))) {
       diagnostics_.Report(Kind::kSyntaxNumber, Range(begin, at_), "this number is too large or too small to be read")
           .Help("zero, and sizes from 2.3e-308 to 1.7e308, can be read");
       return Emit(TokenKind::kFloat, begin, at_, "0.0");

@@ -10,6 +10,7 @@ struct LexerOptions {
   bool bar = false;         ///< is `|` a sign of its own?
   bool prime = false;       ///< is `'` a sign of its own, as in `x' = v`?
   bool at = false;          ///< is `@` a sign?
+  bool doubles = false;     ///< must every number with a fraction be near a double?
   bool half_open = false;   ///< may `)` close `[`, as in `[0, inf)`?
 };
 

@@ -13,6 +13,7 @@
 #include "koord/semantics/round_execution.h"
 #include "koord/semantics/system.h"
 #include "koord/syntax/parser.h"
+#include "solve/smtlib/smtlib_solver.h"
 #include "solve/z3/z3_solver.h"
 
 namespace rondo::koord {
@@ -28,13 +29,26 @@ class Texts {
   std::string Whole() {
     sensor_ = Pick(3) == 0;
     cells_ = Pick(4) == 0;
+    nested_ = Pick(4) == 0;
+    record_ = Pick(5) == 0;
+    points_ = Pick(6) == 0;
     std::string text;
+    if (record_) text += "def adt Rec:\n    int a\n    int k[2]\n";
+    if (cells_ || nested_) text += "def fun item(int[3] xs, int k) -> int:\n    return xs[min(max(k, 0), 2)]\n";
     if (sensor_) text += "using M:\n    sensors:\n        bool near\n    actuators:\n        int power\n";
     text += "allread:\n    int x[N_sys] = 0\n    bool up[N_sys] = false\n";
     text += "allwrite:\n    int s = 0\n    int t = 1\n";
     if (cells_) text += "    int c[3]\n";
+    if (nested_) text += "    int g[2][3]\n";
     text += "local:\n    int n = 0\n    bool b = false\n";
-    if (cells_) text += "init:\n    c[0] = 0\n    c[1] = 0\n    c[2] = 0\n";
+    if (record_) text += "    Rec r\n";
+    if (points_) text += "    pos p = pos(0, 0, 0)\n";
+    if (cells_ || nested_ || record_) text += "init:\n";
+    if (cells_) text += "    c[0] = 0\n    c[1] = 0\n    c[2] = 0\n";
+    if (record_) text += "    r.a = 0\n    r.k[0] = 0\n    r.k[1] = 0\n";
+    for (const char* cell : {"0][0", "0][1", "0][2", "1][0", "1][1", "1][2"}) {
+      if (nested_) text += std::string("    g[") + cell + "] = 0\n";
+    }
     const size_t events = 1 + Pick(3);
     for (size_t e = 0; e < events; ++e) text += Event(e);
     const size_t invariants = 1 + Pick(2);
@@ -68,8 +82,28 @@ class Texts {
       case 6:
         return "(" + Int() + One({" + ", " - "}) + Int() + ")";
       default:
-        return cells_ ? "c[" + std::to_string(Pick(3)) + "]" : "min(" + Int() + ", 2)";
+        return Part();
     }
+  }
+
+  // Something of what only some programs have.
+  std::string Part() {
+    switch (Pick(4)) {
+      case 0:
+        if (cells_) return Pick(2) == 0 ? "c[" + std::to_string(Pick(3)) + "]" : "item(c, " + Int() + ")";
+        break;
+      case 1:
+        if (nested_)
+          return Pick(2) == 0 ? "g[" + std::to_string(Pick(2)) + "][" + std::to_string(Pick(3)) + "]"
+                              : "item(g[" + std::to_string(Pick(2)) + "], n)";
+        break;
+      case 2:
+        if (record_) return One({"r.a", "r.k[0]", "r.k[1]"});
+        break;
+      default:
+        break;
+    }
+    return "min(" + Int() + ", 2)";
   }
 
   std::string Bool(int depth = 2) {
@@ -88,12 +122,14 @@ class Texts {
       case 6:
         return "(" + Bool(depth - 1) + One({" and ", " or "}) + Bool(depth - 1) + ")";
       default:
-        return One(
-            {"(forall j in ID: not up[j])", "(exists j in ID: x[j] > 0)", "(forall j in ID: x[j] <= s)"});
+        if (points_ && Pick(2) == 0) return One({"dist(p, pos(0, 0, 0)) <= 1", "dist(p, pos(1, 0, 0)) == 1"});
+        return One({"(forall j in ID: not up[j])", "(exists j in ID: x[j] > 0)", "(forall j in ID: x[j] <= s)",
+                    "(exists i in ID: forall j in ID: x[j] <= x[i])"});
     }
   }
 
   std::string Statement(const std::string& indent, int depth) {
+    if (Pick(6) == 0) return indent + Special() + "\n";
     switch (Pick(depth > 0 ? 11 : 7)) {
       case 0:
         return indent + "n = " + Capped() + "\n";
@@ -123,6 +159,30 @@ class Texts {
     }
   }
 
+  // Choices, and writes to what only some programs have.
+  std::string Special() {
+    switch (Pick(5)) {
+      case 0:
+        return "n = any int in 0.." + std::to_string(Pick(3));
+      case 1:
+        return "s = min(max(any q in [n, 0, t], 0), 2)";
+      case 2:
+        if (nested_) {
+          const std::string row = Pick(2) == 0 ? std::to_string(Pick(2)) : "min(max(n, 0), 1)";
+          if (Pick(4) == 0) return "g[" + row + "] = g[" + std::to_string(Pick(2)) + "]";
+          return "g[" + row + "][" + (Pick(2) == 0 ? std::to_string(Pick(3)) : "min(max(s, 0), 2)") + "] = " + Capped();
+        }
+        break;
+      case 3:
+        if (record_) return std::string(One({"r.a", "r.k[0]", "r.k[min(max(n, 0), 1)]"})) + " = " + Capped();
+        break;
+      default:
+        if (points_) return "p = pos(" + Capped() + ", 0, 0)";
+        break;
+    }
+    return "n = any int in 1..2";
+  }
+
   // Small, so that there are few states.
   std::string Capped() { return "min(max(" + Int() + ", 0), 2)"; }
 
@@ -137,6 +197,7 @@ class Texts {
   }
 
   std::string Invariant() {
+    if (Pick(4) == 0) return Existential();
     switch (Pick(8)) {
       case 0:
         return "s <= 2";
@@ -153,13 +214,29 @@ class Texts {
       case 6:
         return "forall i in ID: x[i] >= 0 and n[i] <= s + 2";
       default:
+        if (nested_) return One({"g[0][1] + g[1][2] <= 3", "g[0] == g[1] implies g[0][2] == g[1][2]", "g[1][0] <= 1"});
+        if (record_) return One({"forall i in ID: r[i].a <= 2", "forall i in ID: r[i].k[0] + r[i].k[1] <= 3"});
+        if (points_)
+          return One({"forall i, j in ID: dist(p[i], p[j]) <= 2",
+                      "forall i in ID: dist(p[i], pos(0, 0, 0)) <= 1",
+                      "forall i, j in ID: dist(p[i], p[j]) <= dist(p[i], pos(0, 0, 0)) + dist(p[j], pos(0, 0, 0))"});
         return cells_ ? "c[0] + c[1] <= 3" : "exists i in ID: not up[i]";
     }
+  }
+
+  std::string Existential() {
+    return One({"exists i in ID: not up[i]", "exists i in ID: x[i] <= s",
+                "exists i in ID: forall j in ID: x[j] <= x[i]", "forall j in ID: exists i in ID: n[i] >= n[j]",
+                "not (forall i in ID: up[i])", "forall j in ID: up[j] implies exists i in ID: up[i] and x[i] >= x[j]",
+                "exists i in ID: s == i or s >= N_sys", "exists i in ID: n[i] == 0"});
   }
 
   std::mt19937_64 rng_;
   bool sensor_ = false;
   bool cells_ = false;
+  bool nested_ = false;
+  bool record_ = false;
+  bool points_ = false;
 };
 
 struct Loaded {
@@ -220,6 +297,7 @@ uint64_t Cases(uint64_t usual) {
 
 TEST(ExploreAgreement, WhatIsProvedIsNeverViolated) {
   const solve::z3::Z3Solver z3;
+  const solve::smtlib::SmtLibSolver cvc5("cvc5");
   size_t proved = 0;
   size_t violated = 0;
   size_t replayed = 0;
@@ -229,6 +307,8 @@ TEST(ExploreAgreement, WhatIsProvedIsNeverViolated) {
     ASSERT_TRUE(loaded.good()) << "seed " << seed << "\n" << text;
     ProveOptions options;
     options.solver = &z3;
+    // A second solver, for all in long runs and for some in short ones.
+    if (seed <= 10 || Cases(150) > 150) options.cross_check = &cvc5;
     options.jobs = 1;
     options.timeout = std::chrono::milliseconds(1000);
     diag::Diagnostics diagnostics;
@@ -303,7 +383,6 @@ TEST(ExploreAgreement, ASimulatedRoundIsOneOfTheRoundsThatAreExplored) {
     });
     if (state.empty()) continue;
     std::mt19937_64 random(seed);
-    semantics::ProgramTransition transition(*team);
     for (int k = 0; k < 10; ++k) {
       const std::vector<semantics::Word> before = state;
       semantics::RoundExecution round(*team);
@@ -311,6 +390,7 @@ TEST(ExploreAgreement, ASimulatedRoundIsOneOfTheRoundsThatAreExplored) {
       std::vector<size_t> order{0, 1, 2};
       std::shuffle(order.begin(), order.end(), random);
       bool failed = false;
+      team->machine().SetChooser([&](uint64_t possibilities) { return random() % possibilities; });
       for (const size_t r : order) {
         const auto enabled = round.Enabled(r);
         if (enabled.empty() || random() % 4 == 0) continue;
@@ -319,6 +399,7 @@ TEST(ExploreAgreement, ASimulatedRoundIsOneOfTheRoundsThatAreExplored) {
       }
       if (failed) break;
       round.Finish();
+      semantics::ProgramTransition transition(*team);
       transition.Prepare(before);
       bool found = false;
       transition.Enumerate([&](std::span<const semantics::Word> after, bool) {

@@ -97,8 +97,8 @@ class Formulas {
         Elementary::kSin, Elementary::kCos, Elementary::kSqrt, Elementary::kAbs,  Elementary::kAtan,
         Elementary::kExp, Elementary::kTan, Elementary::kLog,  Elementary::kAsin, Elementary::kAcos};
     if (choice < 12) return arena_.Apply(kUnary[Pick(choice == 8 ? 2 : 10)], {a});
-    if (choice < 13)
-      return arena_.Apply(Pick(2) == 0 ? Elementary::kMin : Elementary::kMax, {a, Term(depth - 1)});
+    static constexpr Elementary kBinary[] = {Elementary::kMin, Elementary::kMax, Elementary::kPower};
+    if (choice < 13) return arena_.Apply(kBinary[Pick(3)], {a, Term(depth - 1)});
     return arena_.Divide(a, Term(depth - 1));
   }
 

@@ -118,6 +118,8 @@ class Sampler {
         return std::exp(a);
       case Elementary::kLog:
         return a <= 0 ? NAN : std::log(a);
+      case Elementary::kPower:
+        return a == 0 && arg(1) < 0 ? NAN : std::pow(a, arg(1));
       case Elementary::kCount_:
         break;
     }

@@ -78,6 +78,8 @@ class Rewrites : public testing::Test {
         a.Apply(e, {f(one)});
     }
     a.Apply(Elementary::kAtan2, {f("0"), f("2")});
+    for (const char* exponent : {"3", "1", "0", "-2"}) a.Apply(Elementary::kPower, {x, f(exponent)});
+    a.Apply(Elementary::kPower, {f("-2"), f("3")});
     a.Select(a.Store(v, i, x), j), a.Select(a.Store(v, i, x), i), a.Select(a.Store(v, n(1), x), n(2));
     a.Store(a.Store(v, i, x), i, y);
     a.Field(a.MakeRecord(pair, {i, x}), 1);

@@ -268,7 +268,7 @@ std::string Checker::LengthOf(ExprId length) {
   NeedType(length, model_.types.integer(), "the length of an array");
   if (model_.RefOf(length).kind == RefKind::kSystemSize) return kRobotsLength;
   std::string text = lang::PrintExpr(exprs_, length);
-  if (!IsFixed(length)) {
+  if (!model_.types.Is(model_.TypeOf(length), lang::TypeKind::kError) && !IsFixed(length)) {
     diagnostics_.Report(Kind::kKoordArrayLength, exprs_[length].span, "the length of an array never changes")
         .Help("use numbers, parameters and `N_sys`, or a list");
   }

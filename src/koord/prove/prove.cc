@@ -243,6 +243,7 @@ class Prover {
   }
 
   void Sanity(Task& task, Problems& problems, Reporter& reporter) {
+    if (report_.contradiction) return;  // the rest follows from it
     const auto* unsat = std::get_if<solve::Unsat>(&task.answer);
     switch (task.kind) {
       case TaskKind::kInitially:

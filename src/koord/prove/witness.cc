@@ -367,7 +367,7 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::option
       found = Confirm(aligned, wanted, small, complete, solver, budget, stop);
       distances = found && found->confirmed && (complete || !AllPointsHaveDistances(problems, problem));
     }
-    if (!distances) found = Confirm(problem, wanted, small, complete, solver, budget, stop);
+    if (!found || !distances) found = Confirm(problem, wanted, small, complete, solver, budget, stop);
     if (!found) return std::nullopt;
     return Witness{action,
                    found->confirmed && distances && !problems.vocabulary().uses_texts(),

@@ -21,7 +21,7 @@ bool IsReservedWord(std::string_view word) {
 
 void Parse(const diag::SourceSet& sources, diag::FileId file, Program& program,
            diag::Diagnostics& diagnostics) {
-  const lang::TokenStream stream = lang::Lex(sources, file, {}, diagnostics);
+  const lang::TokenStream stream = lang::Lex(sources, file, {.doubles = true}, diagnostics);
   program.comments.insert(program.comments.end(), stream.comments.begin(), stream.comments.end());
   Parser(stream, program, diagnostics).ParseProgram();
 }

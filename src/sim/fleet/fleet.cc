@@ -50,6 +50,8 @@ class Reader {
   }
 
  private:
+  static constexpr const char* kLost = "this number is too large or too small to be read";
+
   Span At(const toml::source_region& region) const {
     // Lines and columns count from 1; a column is a code point.
     uint32_t line = std::max<uint32_t>(1, region.begin.line);
@@ -67,6 +69,17 @@ class Reader {
     return {file_, begin, std::max(end, begin + 1)};
   }
   Span At(const toml::node& node) const { return At(node.source()); }
+
+  // A number that is not zero and has become zero, or infinite.
+  bool Lost(const toml::node& node) {
+    if (!node.is_floating_point()) return false;
+    const double value = node.value<double>().value_or(0);
+    if (std::isnormal(value)) return false;
+    const Span span = At(node);
+    const std::string_view text =
+        std::string_view(sources_.text(file_)).substr(span.begin, span.end - span.begin);
+    return text.substr(0, text.find_first_of("eE")).find_first_of("123456789") != std::string_view::npos;
+  }
 
   void Wrong(Span span, std::string message) {
     diagnostics_.Report(Kind::kFleetValue, span, std::move(message));
@@ -96,7 +109,9 @@ class Reader {
     const toml::node* node = table.get(name);
     if (node == nullptr) return usual;
     const auto value = node->value<double>();
-    if (!value || node->is_boolean() || !std::isfinite(*value)) {
+    if (Lost(*node)) {
+      Wrong(At(*node), kLost);
+    } else if (!value || node->is_boolean() || !std::isfinite(*value)) {
       Wrong(At(*node), fmt::format("`{}` must be a number", name));
     } else if (*value < low || *value > high) {
       Wrong(At(*node), fmt::format("`{}` must lie between {} and {}", name, low, high));
@@ -141,6 +156,10 @@ class Reader {
     }
     for (size_t i = 0; i < 3; ++i) {
       const auto value = (*array)[i].value<double>();
+      if (Lost((*array)[i])) {
+        Wrong(At((*array)[i]), kLost);
+        return usual;
+      }
       if (!value || !std::isfinite(*value) || std::fabs(*value) > 1e6) {
         Wrong(At((*array)[i]), fmt::format("`{}` needs numbers below a million", name));
         return usual;
@@ -218,7 +237,7 @@ class Reader {
     }
   }
 
-  static json ToJson(const toml::node& node) {
+  json ToJson(const toml::node& node) {
     if (const auto* table = node.as_table()) {
       json object = json::object();
       for (const auto& [key, value] : *table) object[std::string(key.str())] = ToJson(value);
@@ -231,6 +250,7 @@ class Reader {
     }
     if (node.is_boolean()) return node.value<bool>().value();
     if (node.is_integer()) return node.value<int64_t>().value();
+    if (Lost(node)) Wrong(At(node), kLost);
     if (node.is_floating_point()) return node.value<double>().value();
     if (node.is_string()) return node.value<std::string>().value();
     return nullptr;
