@@ -57,6 +57,14 @@ void ReportBroken(Team& team, System& system, const std::vector<std::vector<koor
       break;
     }
     case Trouble::kFault: {
+      // A limit of ours says nothing about the program.
+      if (detail.fault == koord::semantics::Fault::kTooMany) {
+        explored.broken = false;
+        explored.search.ending = explore::Ending::kStates;
+        diagnostics.Report(Kind::kKoordNotChecked, detail.span, std::string(Describe(detail.fault)))
+            .Help("choose from fewer values");
+        return;
+      }
       explored.property = "well-defined";
       const bool start = detail.event < 0;
       auto& report =

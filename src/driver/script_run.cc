@@ -194,6 +194,7 @@ class Runner {
 
   // Of a function that has no rational value there: what doubles make of it.
   std::string Nearly(expr::TermId term) {
+    if (script_.arena.sort_of(term) == script_.arena.Bool()) return "?";
     expr::Numeric::Point point;
     for (const auto& [variable, value] : values_) {
       if (value.IsNumber()) point[variable] = value.AsNumber().ToDouble();
@@ -223,7 +224,7 @@ class Runner {
   const base::StopToken& stop_;
   Levels levels_;
   std::vector<expr::TermId> declared_;  // in sight, in order
-  expr::SmtPrinter printer_{script_.arena};
+  expr::SmtPrinter printer_{script_.arena, expr::SmtFunctions::kNamed};
   std::map<expr::TermId, expr::Value> values_;
   bool has_model_ = false;  // after `sat`
   Clock::time_point deadline_ = Clock::now() + options_.timeout;

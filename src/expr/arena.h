@@ -170,7 +170,6 @@ class Arena {
   TermId Quantify(Op op, const std::vector<TermId>& variables, TermId body);
   TermId Compare(Op op, TermId a, TermId b);
   TermId Zero(TermId t);
-  TermId IfDefined(TermId a, TermId b, bool holds);
   /// a - b if that is a number whatever the variables are.
   std::optional<Rational> ConstantDistance(TermId a, TermId b) const;
 

@@ -92,12 +92,6 @@ TermId Arena::Zero(TermId t) {
   return already ? t : Ite(Defined(*this, t), zero, t);
 }
 
-// An atomic formula about a and b that holds wherever they have values, or nowhere.
-TermId Arena::IfDefined(TermId a, TermId b, bool holds) {
-  if (!holds) return false_;
-  return And(Defined(*this, a), Defined(*this, b));
-}
-
 TermId Arena::Neg(TermId a) { return Mul(Number(sort_of(a), Rational(-1)), a); }
 
 TermId Arena::Mul(TermId a, TermId b) {
@@ -157,9 +151,11 @@ TermId Arena::Lt(TermId a, TermId b) { return Compare(Op::kLt, a, b); }
 
 TermId Arena::Compare(Op op, TermId a, TermId b) {
   CHECK(sort_of(a) == sort_of(b) && (sort_of(a) == int_ || sort_of(a) == real_));
+  // Where a term has no value, neither the comparison nor its negation holds.
+  if (IsPartial(a) || IsPartial(b)) return Intern(op, bool_, 0, std::vector{a, b});
   if (const auto distance = ConstantDistance(a, b)) {
     const bool holds = op == Op::kLe ? *distance <= Rational(0) : *distance < Rational(0);
-    return Fire(Rewrite::kCompareDistance, op, bool_, 0, {a, b}, IfDefined(a, b, holds));
+    return Fire(Rewrite::kCompareDistance, op, bool_, 0, {a, b}, Constant(holds));
   }
   return Intern(op, bool_, 0, std::vector{a, b});
 }

@@ -84,7 +84,8 @@ TermId Arena::Apply(Elementary function, std::vector<TermId> args) {
   }
   if (function == Elementary::kPower && IsNumber(args[1])) {
     if (const auto n = SmallInteger(number(args[1]), kLargestExponent)) {
-      TermId product = Number(real_, Rational(1));
+      // x^0 is 1 wherever x has a value.
+      TermId product = *n == 0 ? Add(Number(real_, Rational(1)), Zero(args[0])) : Number(real_, Rational(1));
       for (int64_t i = 0; i < std::abs(*n); ++i) product = i == 0 ? args[0] : Mul(product, args[0]);
       const TermId result = *n < 0 ? Divide(Number(real_, Rational(1)), product) : product;
       return Fire(Rewrite::kPowerProduct, Op::kElementary, real_, payload, std::move(args), result);

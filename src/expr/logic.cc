@@ -103,7 +103,9 @@ TermId Arena::Eq(TermId a, TermId b) {
   const auto fire = [&](Rewrite rewrite, TermId result) {
     return Fire(rewrite, Op::kEq, bool_, 0, {a, b}, result);
   };
-  if (a == b) return fire(Rewrite::kEqReflexive, sort_of(a) == bool_ ? true_ : IfDefined(a, b, true));
+  // Where a term has no value, neither the equation nor its negation holds.
+  const bool partial = sort_of(a) != bool_ && (IsPartial(a) || IsPartial(b));
+  if (a == b && !partial) return fire(Rewrite::kEqReflexive, true_);
   const bool constants = (op(a) == Op::kNumber || op(a) == Op::kMember) && op(a) == op(b);
   if (constants) return fire(Rewrite::kEqConstants, false_);
   if (sort_of(a) == bool_) {
@@ -117,9 +119,9 @@ TermId Arena::Eq(TermId a, TermId b) {
     for (size_t i = 0; i < args(a).size(); ++i) fields.push_back(Eq(arg(a, i), arg(b, i)));
     return fire(Rewrite::kEqRecords, And(fields));
   }
-  if (sort_of(a) == int_ || sort_of(a) == real_) {
+  if (!partial && (sort_of(a) == int_ || sort_of(a) == real_)) {
     if (const auto distance = ConstantDistance(a, b))
-      return fire(Rewrite::kEqDistance, IfDefined(a, b, distance->IsZero()));
+      return fire(Rewrite::kEqDistance, Constant(distance->IsZero()));
   }
   if (b < a) return fire(Rewrite::kEqOrder, Intern(Op::kEq, bool_, 0, std::vector{b, a}));
   return Intern(Op::kEq, bool_, 0, std::vector{a, b});

@@ -69,7 +69,7 @@ double Numeric::One(TermId term) {
     case Elementary::kExp:
       return std::exp(arg(0));
     case Elementary::kLog:
-      return std::log(arg(0));
+      return arg(0) > 0 ? std::log(arg(0)) : kNone;
     case Elementary::kPower:
       return arg(0) == 0 && arg(1) < 0 ? kNone : std::pow(arg(0), arg(1));
     case Elementary::kCount_:

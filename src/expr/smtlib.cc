@@ -24,7 +24,6 @@ bool MeansSomething(std::string_view name) {
 }
 
 std::string Quote(std::string_view name) {
-  if (MeansSomething(name)) return fmt::format("|{} |", name);
   const bool plain =
       !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
       name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") ==
@@ -47,6 +46,12 @@ std::string NumberText(const Arena& arena, TermId t) {
 }  // namespace
 
 std::string Quoted(std::string_view name) { return Quote(name); }
+
+std::string SmtPrinter::SymbolName(SymbolId id) const {
+  const std::string& name = arena_.symbol(id).name;
+  const bool other = functions_ == SmtFunctions::kSpelledOut && MeansSomething(name);
+  return other ? fmt::format("|{} (a name)|", name) : Quote(name);
+}
 
 std::string SmtPrinter::SortName(SortId id) const {
   const Sort& s = arena_.sort(id);
@@ -82,9 +87,9 @@ std::string SmtPrinter::Print(TermId t, bool definition) const {
       return Quote(fmt::format("{}.{}", s.name, s.names[term.payload]));
     }
     case Op::kVariable:
-      return Quote(arena_.symbol(SymbolId(term.payload)).name);
+      return SymbolName(SymbolId(term.payload));
     case Op::kApply:
-      return call(Quote(arena_.symbol(SymbolId(term.payload)).name));
+      return call(SymbolName(SymbolId(term.payload)));
     case Op::kNot:
     case Op::kAnd:
     case Op::kOr:
@@ -155,7 +160,7 @@ class Declarations {
     if (term.op == Op::kVariable || term.op == Op::kApply) {
       const Symbol& symbol = arena_.symbol(SymbolId(term.payload));
       if (symbol.bound || !symbols_.insert(symbol.name).second) return;
-      Function(Quote(symbol.name), symbol.parameters, symbol.result);
+      Function(printer_.SymbolName(SymbolId(term.payload)), symbol.parameters, symbol.result);
     }
     const auto args = arena_.args(t);
     const auto list_function = [&](SortId list, const std::vector<SortId>& parameters, SortId result) {

@@ -14,7 +14,7 @@ struct SmtAssertion {
 };
 
 /// How abs, min and max are written: spelled out, since they have no name that all solvers know, or as dReal
-/// and Rondo name them.
+/// and Rondo name them. Spelled out, symbols never have names that some solver has a meaning for.
 enum class SmtFunctions : uint8_t { kSpelledOut, kNamed };
 
 /// Prints terms, some of them by names.
@@ -27,6 +27,7 @@ class SmtPrinter {
   bool IsDefined(TermId t) const { return names_.contains(t); }
   /// `definition`: as it is made, even if it has a name itself.
   std::string Print(TermId t, bool definition = false) const;
+  std::string SymbolName(SymbolId id) const;
   std::string SortName(SortId id) const;
   std::string FieldName(SortId record, uint32_t field) const;
 
@@ -36,7 +37,7 @@ class SmtPrinter {
   std::unordered_map<TermId, std::string> names_;
 };
 
-/// A name as a symbol: quoted where it must be, and never one that solvers have a meaning for.
+/// A name as a symbol: quoted where it must be.
 std::string Quoted(std::string_view name);
 
 /// A complete SMT-LIB 2.6 script: sorts, symbols, the assertions with shared subterms defined once,

@@ -25,7 +25,7 @@ using expr::Rational;
 enum class Meaning : uint8_t {
   kValue,
   kNone,      ///< no value: a comparison is false
-  kAnything,  ///< some number
+  kAnything,  ///< some number; of atan2, some angle
 };
 
 /// A number of 200 bits; results are within 2^-190 of the exact ones.
@@ -45,6 +45,7 @@ class Number {
 struct Operator {
   const char* name;
   size_t arity;
+  bool polynomial;
   std::function<Meaning(double, double, Number&)> at;
 };
 
@@ -68,32 +69,32 @@ Meaning Power(double x, double y, Number& out) {
 
 const std::vector<Operator>& Operators() {
   static const std::vector<Operator> kAll{
-      {"sqrt", 1, [](double x, double, Number& r) { return x < 0 ? Meaning::kNone : Unary(mpfr_sqrt, x, r); }},
-      {"abs", 1, [](double x, double, Number& r) { return Unary(mpfr_abs, x, r); }},
-      {"sin", 1, [](double x, double, Number& r) { return Unary(mpfr_sin, x, r); }},
-      {"cos", 1, [](double x, double, Number& r) { return Unary(mpfr_cos, x, r); }},
-      {"tan", 1, [](double x, double, Number& r) { return Unary(mpfr_tan, x, r); }},
-      {"arcsin", 1,
+      {"sqrt", 1, false, [](double x, double, Number& r) { return x < 0 ? Meaning::kNone : Unary(mpfr_sqrt, x, r); }},
+      {"abs", 1, true, [](double x, double, Number& r) { return Unary(mpfr_abs, x, r); }},
+      {"sin", 1, false, [](double x, double, Number& r) { return Unary(mpfr_sin, x, r); }},
+      {"cos", 1, false, [](double x, double, Number& r) { return Unary(mpfr_cos, x, r); }},
+      {"tan", 1, false, [](double x, double, Number& r) { return Unary(mpfr_tan, x, r); }},
+      {"arcsin", 1, false,
        [](double x, double, Number& r) { return std::fabs(x) > 1 ? Meaning::kNone : Unary(mpfr_asin, x, r); }},
-      {"arccos", 1,
+      {"arccos", 1, false,
        [](double x, double, Number& r) { return std::fabs(x) > 1 ? Meaning::kNone : Unary(mpfr_acos, x, r); }},
-      {"arctan", 1, [](double x, double, Number& r) { return Unary(mpfr_atan, x, r); }},
-      {"exp", 1, [](double x, double, Number& r) { return Unary(mpfr_exp, x, r); }},
-      {"log", 1, [](double x, double, Number& r) { return x <= 0 ? Meaning::kNone : Unary(mpfr_log, x, r); }},
-      {"sinh", 1, [](double x, double, Number& r) { return Unary(mpfr_sinh, x, r); }},
-      {"tanh", 1, [](double x, double, Number& r) { return Unary(mpfr_tanh, x, r); }},
-      {"+", 2, [](double x, double y, Number& r) { return Binary(mpfr_add, x, y, r); }},
-      {"-", 2, [](double x, double y, Number& r) { return Binary(mpfr_sub, x, y, r); }},
-      {"*", 2, [](double x, double y, Number& r) { return Binary(mpfr_mul, x, y, r); }},
-      {"/", 2,
+      {"arctan", 1, false, [](double x, double, Number& r) { return Unary(mpfr_atan, x, r); }},
+      {"exp", 1, false, [](double x, double, Number& r) { return Unary(mpfr_exp, x, r); }},
+      {"log", 1, false, [](double x, double, Number& r) { return x <= 0 ? Meaning::kNone : Unary(mpfr_log, x, r); }},
+      {"sinh", 1, false, [](double x, double, Number& r) { return Unary(mpfr_sinh, x, r); }},
+      {"tanh", 1, false, [](double x, double, Number& r) { return Unary(mpfr_tanh, x, r); }},
+      {"+", 2, true, [](double x, double y, Number& r) { return Binary(mpfr_add, x, y, r); }},
+      {"-", 2, true, [](double x, double y, Number& r) { return Binary(mpfr_sub, x, y, r); }},
+      {"*", 2, true, [](double x, double y, Number& r) { return Binary(mpfr_mul, x, y, r); }},
+      {"/", 2, true,
        [](double x, double y, Number& r) { return y == 0 ? Meaning::kAnything : Binary(mpfr_div, x, y, r); }},
-      {"min", 2, [](double x, double y, Number& r) { return Binary(mpfr_min, x, y, r); }},
-      {"max", 2, [](double x, double y, Number& r) { return Binary(mpfr_max, x, y, r); }},
-      {"arctan2", 2,
+      {"min", 2, true, [](double x, double y, Number& r) { return Binary(mpfr_min, x, y, r); }},
+      {"max", 2, true, [](double x, double y, Number& r) { return Binary(mpfr_max, x, y, r); }},
+      {"arctan2", 2, false,
        [](double x, double y, Number& r) {
          return x == 0 && y == 0 ? Meaning::kAnything : Binary(mpfr_atan2, x, y, r);
        }},
-      {"^", 2, Power},
+      {"^", 2, true, Power},
   };
   return kAll;
 }
@@ -132,7 +133,8 @@ class Engines {
     std::string z3;
   };
 
-  Said Ask(const std::string& text) {
+  // Z3 knows polynomials and little more; asking it takes a while.
+  Said Ask(const std::string& text, bool for_z3) {
     diag::SourceSet sources;
     diag::Diagnostics diagnostics;
     lang::smtlib::Script script;
@@ -150,6 +152,7 @@ class Engines {
       ++certified;
     }
     Said said{testing_support::Say(answer), ""};
+    if (!for_z3) return said;
     said.z3 = testing_support::Say(z3_.Check(query, {std::chrono::milliseconds(500), false, false}, {}));
     return said;
   }
@@ -166,7 +169,7 @@ void Examine(const Operator& op, double x, double y, bool whole, Engines& engine
   const double value = exact.ToDouble();
   const auto never = [&](const std::string& answer, const std::string& claim) {
     const std::string script = Script(op, x, y, whole, claim);
-    const Engines::Said said = engines.Ask(script);
+    const Engines::Said said = engines.Ask(script, op.polynomial);
     EXPECT_NE(said.icp, answer) << Where(script);
     EXPECT_NE(said.z3, answer) << Where(script);
   };
@@ -177,8 +180,9 @@ void Examine(const Operator& op, double x, double y, bool whole, Engines& engine
       never("sat", "(>= z 3.0)");
       return;
     case Meaning::kAnything:
-      never("unsat", "(= z 12345.0)");
+      never("unsat", "(= z 3.0)");
       never("unsat", "(< z (- 0.5))");
+      if (std::string(op.name) != "arctan2") never("unsat", "(= z 12345.0)");
       return;
     case Meaning::kValue:
       break;
@@ -250,14 +254,14 @@ TEST_P(Points, AreWhatTheDefinitionSays) {
                            1e300}) {
       Compare(op, x, 0);
       Examine(op, x, 0, false, engines);
-      if (x == std::floor(x) && std::fabs(x) < 1e3) Examine(op, x, 0, true, engines);
+      if (x == std::floor(x) && std::fabs(x) < 4) Examine(op, x, 0, true, engines);
     }
   } else {
-    for (const double x : {-1e10, -3.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 1e10}) {
-      for (const double y : {-3.0, -2.0, -1.0, -0.5, 0.0, 0.25, 0.5, 1.0, 2.0, 3.0, 70.0}) {
+    for (const double x : {-1e10, -2.0, -0.5, 0.0, 0.5, 1.0, 3.0}) {
+      for (const double y : {-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 3.0, 70.0}) {
         Compare(op, x, y);
         Examine(op, x, y, false, engines);
-        if (x == std::floor(x) && y == std::floor(y) && std::fabs(x) < 1e3) Examine(op, x, y, true, engines);
+        if (x == std::floor(x) && y == std::floor(y) && std::fabs(x) < 4) Examine(op, x, y, true, engines);
       }
     }
   }

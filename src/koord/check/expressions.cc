@@ -228,7 +228,8 @@ TypeId Checker::Any(const lang::Expr& e) {
                                                           types.Name(list)));
     }
   }
-  if (const auto named = TypeNamed(e.text); named && !types.Coerce(element, *named))
+  const auto named = TypeNamed(e.text);
+  if (named && !(e.args.size() > 1 ? types.Unify(element, *named) : types.Coerce(element, *named)))
     return Mismatch(e.span, fmt::format("these are values of type `{}`, not `{}`", types.Name(element), e.text));
   return element;
 }

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "koord/check/checker.h"
 
 namespace rondo::koord {
@@ -188,8 +190,11 @@ TypeId Checker::Target(ExprId id) {
     }
   }
   writing_ = true;
+  // Parts of a target are looked at more than once.
+  const bool may_choose = std::exchange(may_choose_, false);
   const size_t before = diagnostics_.errors();
   const TypeId type = Expr(id);
+  may_choose_ = may_choose;
   writing_ = false;
   if (diagnostics_.errors() != before) return {};
   const Ref ref = model_.RefOf(root);

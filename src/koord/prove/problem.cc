@@ -301,9 +301,7 @@ std::vector<DefinednessCheck> Problems::ChecksOfPart(Part part, TermId robot) {
       theory_.Background();
       break;
   }
-  std::vector<DefinednessCheck> checks = executor_.TakeSpecificationChecks();
-  std::erase_if(checks, [](const DefinednessCheck& c) { return c.kind != CheckKind::kUnrolling; });
-  return checks;
+  return executor_.TakeSpecificationChecks();
 }
 
 std::string Problems::NameOf(size_t place) const {
@@ -344,6 +342,7 @@ Problem Problems::Undefined(size_t place, TermId undefined, TermId robot) {
     Append(assertions, Everything(round_.start()));
   } else if (place == specification(Part::kInitial)) {
     Append(assertions, theory_.DeclaredValues(round_.start()));
+    Append(assertions, theory_.Initially(round_.start()));
     Append(assertions, theory_.PortFacts(round_.start()));
   } else if (place == specification(Part::kPorts)) {
     Append(assertions, theory_.PortFacts(round_.start()));

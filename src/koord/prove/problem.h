@@ -54,9 +54,8 @@ class Problems {
   /// The operations of `place`, an action or `specification(part)`, as `robot` runs it.
   std::vector<DefinednessCheck> ChecksAt(size_t place, TermId robot);
   std::vector<DefinednessCheck> ChecksOf(size_t place) { return ChecksAt(place, robot_); }
-  /// The parts of the specification, as places behind those of the actions. Of invariants and conditions of
-  /// promises every operation must have a value: a proof concludes from what they deny. Assumptions only claim
-  /// less where they have no value; of them the bounds of unrolled loops must hold.
+  /// The parts of the specification, as places behind those of the actions. Every operation must have a value,
+  /// where what is assumed of the same part holds.
   enum class Part : uint8_t { kInvariants, kPorts, kInitial, kFacts };
   static constexpr size_t kParts = 4;
   size_t specification(Part part) const { return round_.actions().size() + static_cast<size_t>(part); }

@@ -170,6 +170,9 @@ class Prover {
     solve::Budget budget{options_.timeout, true};
     // A sanity check that takes long is no reason to wait: it can only warn.
     if (!task.IsObligation()) budget.time = std::min(budget.time, std::chrono::milliseconds(2000));
+    // Each attempt gets a part of the time: most answers come at once.
+    if (effort == Effort::kFew) budget.time = std::min(budget.time, options_.timeout / 5);
+    if (effort == Effort::kMore) budget.time = std::min(budget.time, options_.timeout / 4);
     if (effort == Effort::kMost) budget.time = std::min(budget.time, options_.timeout / 20);
     task.answer = options_.solver->Check(problem.query, budget, options_.stop);
     if (effort != Effort::kMost || !std::holds_alternative<solve::Unknown>(task.answer)) return;

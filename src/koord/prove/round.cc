@@ -185,10 +185,16 @@ TermId Round::Urgency(TermId r) {
   std::vector<TermId> facts;
   for (size_t u = 1; u < actions_.size(); ++u) {
     if (!model_.events[u - 1]->urgent) continue;
-    const Effect& urgent = EffectOf(u, r);
+    const Effect urgent = EffectOf(u, r);
     const TermId waits = arena_.Not(urgent.enabled);
-    if (urgent.locks == arena_.False())
-      facts.push_back(arena_.Or({arena_.Not(moved_), arena_.Not(Acts(r, 0)), waits}));
+    // Another robot may hold the lock; of a whole team it is known whether one does.
+    std::vector<TermId> holders;
+    for (const TermId other : participants_) {
+      if (whole_team_ && other != r) holders.push_back(arena_.And(Acts(other, u), EffectOf(u, other).locks));
+    }
+    const TermId held = whole_team_ ? arena_.Or(holders) : arena_.True();
+    facts.push_back(
+        arena_.Or({arena_.Not(moved_), arena_.Not(Acts(r, 0)), waits, arena_.And(urgent.locks, held)}));
     for (size_t a = 1; a < actions_.size(); ++a) {
       if (!model_.events[a - 1]->urgent) facts.push_back(arena_.Or(arena_.Not(Acts(r, a)), waits));
     }
@@ -235,6 +241,7 @@ std::vector<solve::Assertion> Round::Relate(TermId goal, const std::vector<TermI
                                             const std::vector<TermId>& others) {
   participants_.clear();
   writers_.clear();
+  whole_team_ = !everyone.empty();
   for (const TermId r : everyone) Participate(r);
   for (const TermId r : others) Participate(r);
   FindReads(goal);

@@ -80,6 +80,7 @@ class Round {
   std::vector<Effect> effects_;  // for `self_`, by action; empty for `skip`
   std::map<std::pair<size_t, TermId>, Effect> instances_;
   std::vector<TermId> participants_;
+  bool whole_team_ = false;  // are the participants all robots?
   std::vector<LastWriter> writers_;
 };
 

@@ -119,6 +119,7 @@ enum class Fault : uint8_t {
   kGrid,      ///< a step that is not positive
   kNoValue,   ///< a set of values that is empty
   kTooLong,   ///< a list or grid of more than a million items
+  kTooMany,   ///< more choices of `any` than are followed
   kNoLock,    ///< no fault: another robot holds the lock of the event, which is a skip then
   kRunaway,   ///< more than a hundred million instructions
 };

@@ -61,6 +61,8 @@ std::string_view Describe(Fault fault) {
       return "there is no value in this list";
     case Fault::kTooLong:
       return "the list has more than a million items";
+    case Fault::kTooMany:
+      return "there are more than 100,000 ways to choose";
     case Fault::kNoLock:
       return "another robot holds the lock";
     case Fault::kRunaway:
@@ -591,7 +593,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         const int64_t low = ToInt(s[-1]);
         if (low > high) RONDO_FAIL(kNoValue);
         const uint64_t above = static_cast<uint64_t>(high) - static_cast<uint64_t>(low);
-        if (above == std::numeric_limits<uint64_t>::max()) RONDO_FAIL(kTooLong);
+        if (above == std::numeric_limits<uint64_t>::max()) RONDO_FAIL(kTooMany);
         if (chooser_) s[-1] = static_cast<Word>(static_cast<uint64_t>(low) + chooser_(above + 1));
         break;
       }

@@ -22,6 +22,8 @@ constexpr size_t kMostExpansions = 1'000'000;
 // Definitions inside definitions, which may use themselves.
 constexpr size_t kDeepestExpansion = 200;
 constexpr size_t kMostDigits = 20'000;
+// Powers of powers, written out.
+constexpr uint64_t kMostFactors = 1'000;
 
 }  // namespace
 
@@ -88,9 +90,19 @@ expr::TermId TermReader::Bounded(TermId t, const SExpr& e) {
   }
   const size_t known = depths_.size();
   depths_.resize(std::max(known, arena_.size()));
+  factors_.resize(depths_.size());
   for (size_t i = known; i < arena_.size(); ++i) {
-    for (const TermId arg : arena_.args(TermId(i)))
+    const bool product = arena_.op(TermId(i)) == expr::Op::kMul;
+    uint64_t factors = product ? 0 : 1;
+    for (const TermId arg : arena_.args(TermId(i))) {
       depths_[i] = std::max(depths_[i], depths_[arg.index()] + 1);
+      factors = product ? factors + factors_[arg.index()] : std::max(factors, factors_[arg.index()]);
+    }
+    factors_[i] = std::min(factors, kMostFactors + 1);
+  }
+  if (factors_[t.index()] > kMostFactors) {
+    diagnostics_.Report(Kind::kSmtUnsupported, e.span, "this product has too many factors");
+    return {};
   }
   if (depths_[t.index()] <= 2 * kDeepest) return t;
   diagnostics_.Report(Kind::kSyntaxNesting, e.span, "nested too deeply");

@@ -102,6 +102,8 @@ class Checker {
           throw Rejection("only variables are substituted, by numbers");
         const AtomId variable = normal_.Variable(step.terms[0]);
         branch.facts.Substitute(variable, normal_.Number(step.terms[1]));
+        // The variable is free from now on: what was said of it holds no longer.
+        branch.required.clear();
         return;
       }
       case Step::Kind::kSquares:
@@ -196,6 +198,7 @@ class Checker {
         if (arena_.number(arena_.arg(t, 0)) < Rational(0)) throw Rejection("a square is subtracted");
         t = arena_.arg(t, 1);
       }
+      if (arena_.op(t) == Op::kToReal) t = arena_.arg(t, 0);
       if (arena_.op(t) != Op::kMul || arena_.arg(t, 0) != arena_.arg(t, 1))
         throw Rejection("a summand is no square");
       facts.Add(normal_.Literal(normal_.poly(normal_.Number(arena_.arg(t, 0))), kEven));

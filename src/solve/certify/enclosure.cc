@@ -303,18 +303,24 @@ Enclosure Tan(const Enclosure& a) {
   return Increasing(a, mpfr_tan);
 }
 
-// On a box away from the cut {y = 0, x <= 0}, extrema lie in its corners.
+// On a box away from the cut {y = 0, x <= 0}, extrema lie in its corners; also on one that touches the cut from
+// above, without the origin: on the cut the angle is pi.
 Enclosure Atan2(const Enclosure& y, const Enclosure& x) {
   if (y.IsEmpty() || x.IsEmpty()) return Enclosure::Empty();
   Enclosure r;
-  if (y.HasZero() && mpfr_sgn(x.lo_) <= 0) {
+  const bool origin = y.HasZero() && x.HasZero();
+  const bool below = mpfr_sgn(y.lo_) < 0;
+  if (origin || (below && y.HasZero() && mpfr_sgn(x.lo_) <= 0)) {
     r = Enclosure::Pi();
     mpfr_neg(r.lo_, r.hi_, MPFR_RNDD);
     return r;
   }
   r.Clear();
   Enclosure t;
-  for (const mpfr_t* v : {&y.lo_, &y.hi_}) {
+  Enclosure from = y;
+  if (!below && mpfr_zero_p(from.lo_) != 0) mpfr_set_zero(from.lo_, 1);
+  if (!below && mpfr_zero_p(from.hi_) != 0) mpfr_set_zero(from.hi_, 1);
+  for (const mpfr_t* v : {&from.lo_, &from.hi_}) {
     for (const mpfr_t* u : {&x.lo_, &x.hi_}) {
       mpfr_atan2(t.lo_, *v, *u, MPFR_RNDD);
       mpfr_atan2(t.hi_, *v, *u, MPFR_RNDU);

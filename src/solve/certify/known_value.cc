@@ -2,6 +2,8 @@
 
 #include <gmpxx.h>
 
+#include <utility>
+
 namespace rondo::solve::certify {
 
 using expr::Elementary;
@@ -17,6 +19,22 @@ std::optional<Rational> SquareRoot(const Rational& value) {
   const mpz_class p = sqrt(n);
   const mpz_class q = sqrt(d);
   if (p * p != n || q * q != d) return std::nullopt;
+  return *Rational::Parse(p.get_str()) / *Rational::Parse(q.get_str());
+}
+
+// (p / q)^n = p^n / q^n, and the reciprocal for a negative n.
+std::optional<Rational> WholePower(const Rational& base, const Rational& exponent) {
+  constexpr unsigned long kMost = 10'000;
+  constexpr size_t kMostDigits = 20'000;
+  const Rational size = exponent < Rational(0) ? Rational(0) - exponent : exponent;
+  if (!size.IsInteger() || size > Rational(static_cast<int64_t>(kMost))) return std::nullopt;
+  const unsigned long n = mpz_class(size.Numerator()).get_ui();
+  if (base.Digits() * n > kMostDigits) return std::nullopt;
+  mpz_class p;
+  mpz_class q;
+  mpz_pow_ui(p.get_mpz_t(), mpz_class(base.Numerator()).get_mpz_t(), n);
+  mpz_pow_ui(q.get_mpz_t(), mpz_class(base.Denominator()).get_mpz_t(), n);
+  if (exponent < Rational(0)) std::swap(p, q);
   return *Rational::Parse(p.get_str()) / *Rational::Parse(q.get_str());
 }
 
@@ -54,8 +72,8 @@ std::optional<Rational> KnownValue(Elementary function, const std::vector<Ration
       break;
     case Elementary::kPower:
       if (args[1].IsZero()) return one;
-      if (x.IsZero() && args[1] > zero) return zero;
-      break;  // whole exponents are products: Normal::WholePower
+      if (x.IsZero()) return args[1] > zero ? std::optional(zero) : std::nullopt;
+      return WholePower(x, args[1]);
     case Elementary::kCount_:
       break;
   }

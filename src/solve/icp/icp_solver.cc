@@ -241,6 +241,10 @@ Answer IcpSolver::Check(const Query& query, const Budget& budget, const base::St
       Box box = ToBox(decision.box(), lowered);
       double width = 0;
       for (const auto& [variable, range] : box) width = std::max(width, range.second - range.first);
+      // Of what was eliminated, nothing is known where its definition may have no value.
+      for (const auto& [variable, range] : decision.box()) {
+        if (range.IsEmpty()) width = std::numeric_limits<double>::infinity();
+      }
       // Not a small box: far away, doubles are too coarse.
       if (!(width <= options_.widest))
         return Unknown{fmt::format("nothing could be excluded in a box of width {}", width)};

@@ -215,6 +215,7 @@ expr::Value Translator::Read(const ::z3::expr& value, expr::SortId id) {
       return {std::move(fields)};
     }
     case SortKind::kArray:
+      return {std::string("[...]")};  // a function over all integers: too much to tell
     case SortKind::kList:
     case SortKind::kOpaque:
       return {value.to_string()};

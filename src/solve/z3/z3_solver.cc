@@ -33,6 +33,7 @@ class Job : public std::enable_shared_from_this<Job> {
   ::z3::expr_vector assumptions{context};
   Translator translate;
   std::map<std::string, ::z3::expr> literals;
+  std::map<expr::TermId, ::z3::expr> names;  // of what is wanted
 
   /// nullopt: it did not end in time.
   std::optional<::z3::check_result> Check(const base::StopToken& stop) {
@@ -105,6 +106,15 @@ Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop
     }
     solver.add(::z3::implies(it->second, formula));
   }
+  // Evaluating a term in a model has no time limit: what is wanted gets a name, and the model knows its value.
+  for (const expr::TermId t : query.wanted) {
+    const expr::SortKind kind = query.arena->sort(query.arena->sort_of(t)).kind;
+    const ::z3::expr value = translate(t);
+    if (query.arena->op(t) == expr::Op::kVariable || kind == expr::SortKind::kArray) continue;
+    const ::z3::expr name(context, Z3_mk_fresh_const(context, "wanted", value.get_sort()));
+    solver.add(name == value);
+    job->names.emplace(t, name);
+  }
   const std::optional<::z3::check_result> result = job->Check(limited);
   if (!result) {
     if (stop.cancelled()) return Unknown{"interrupted"};
@@ -122,7 +132,10 @@ Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop
       const ::z3::model model = solver.get_model();
       for (const expr::TermId t : query.wanted) {
         try {
-          const ::z3::expr value = model.eval(translate(t), true);
+          const expr::SortKind kind = query.arena->sort(query.arena->sort_of(t)).kind;
+          if (kind == expr::SortKind::kArray) continue;
+          const auto name = job->names.find(t);
+          const ::z3::expr value = model.eval(name != job->names.end() ? name->second : translate(t), true);
           if (const auto near = translate.Near(value)) {
             sat.near.emplace(t, *near);
           } else {
