@@ -7,7 +7,8 @@ constexpr KindInfo kTable[] = {
     {Kind::kKoordUndeclared, "koord-undeclared", Severity::kError, "a name that is declared nowhere",
      "Every variable and port must be declared: local variables under `local:`, shared ones under `allread:` "
      "or\n"
-     "`allwrite:`, ports in a module. Functions need no declaration (a warning says so); without a body they are external.",
+     "`allwrite:`, ports in a module. Functions need no declaration (a warning says so); without a body they "
+     "are external.",
      "local:\n    int counter\nStep:\n    eff:\n        count = 1\n", "check"},
     {Kind::kKoordDuplicate, "koord-duplicate", Severity::kError, "a name that is declared twice",
      "Two variables, types, functions or events cannot share a name. (An event and a variable may: they are "
@@ -36,11 +37,14 @@ constexpr KindInfo kTable[] = {
      "check"},
     {Kind::kKoordUnknownFunction, "koord-unknown-function", Severity::kWarning,
      "a function that is declared nowhere",
-     "A function without a declaration, a summary or a body is external: in proofs it may return anything of its "
+     "A function without a declaration, a summary or a body is external: in proofs it may return anything of "
+     "its "
      "type,\n"
-     "though always the same for the same arguments; programs that run need a body for it. Often the name is a "
+     "though always the same for the same arguments; programs that run need a body for it. Often the name is "
+     "a "
      "typing\n"
-     "mistake, or a word of another language. Declare it if it is meant: `def fun f(pos p) -> float`. For a value "
+     "mistake, or a word of another language. Declare it if it is meant: `def fun f(pos p) -> float`. For a "
+     "value "
      "that\n"
      "may be a different one each time, write `any q in [...]`.",
      "local:\n    pos p\n    float d\nStep:\n    eff:\n        d = distance(p, p) + 0.0\n", "check"},

@@ -28,7 +28,8 @@ constexpr KindInfo kTable[] = {
      "Only lists, arrays and `allread` variables can be indexed. A record has members: `p.x`.",
      "local:\n    int n\n    int m\nStep:\n    eff:\n        m = n[0]\n", "check"},
     {Kind::kKoordArrayLength, "koord-array-length", Severity::kError, "a length that no array can have",
-     "An array has a fixed number of items, at least one: a number, `N_sys`, a parameter, or a sum, difference or "
+     "An array has a fixed number of items, at least one: a number, `N_sys`, a parameter, or a sum, "
+     "difference or "
      "product\n"
      "of these.",
      "local:\n    int a[0]\nStep:\n    eff:\n        stop\n", "check"},
@@ -36,7 +37,8 @@ constexpr KindInfo kTable[] = {
      "a function whose types cannot be told",
      "The types of an external function are inferred from its uses. Where they do not suffice, declare it:\n"
      "`def fun area(List<pos> corners) -> float`.",
-     "local:\n    bool b\nStep:\n    eff:\n        b = same([], [])\n", "check"},
+     "local:\n    bool b\nStep:\n    eff:\n        b = same([], [])\nsummary same(p, q) -> r: r or not r\n",
+     "check"},
     {Kind::kKoordStreamMisuse, "koord-stream-misuse", Severity::kError,
      "a stream used as a value, or a value as a stream",
      "A stream takes values with `<<` and can be used in no other way; nothing else takes `<<`.",

@@ -33,7 +33,8 @@ constexpr KindInfo kTable[] = {
      "using Log:\n    actuators:\n        stream stdout\nStep:\n    eff:\n        Log.stdout << \"hello\n",
      "check"},
     {Kind::kSyntaxNumber, "syntax-number", Severity::kError, "a number that cannot be read",
-     "Numbers are written 12, 1.5, .5, 5. or 1e-3, and names do not start with a digit. A number that is not zero has a\n"
+     "Numbers are written 12, 1.5, .5, 5. or 1e-3, and names do not start with a digit. A number that is not "
+     "zero has a\n"
      "size from 2.3e-308 to 1.7e308: proofs have it exactly, robots as the nearest double.",
      "local:\n    int n = 12ab\nStep:\n    eff:\n        stop\n", "check"},
     {Kind::kSyntaxNesting, "syntax-nesting", Severity::kError, "nested too deeply",

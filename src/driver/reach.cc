@@ -50,7 +50,8 @@ class Search {
     reached.text = Nothing(row.name, fmt::format("N = {}", robots), options);
     if (last_.search.ending == explore::Ending::kComplete)
       reached.text = fmt::format(
-          "{}: no run violates it for N = {} with these values ({} states): a further invariant may exclude the "
+          "{}: no run violates it for N = {} with these values ({} states): a further invariant may exclude "
+          "the "
           "state",
           row.name, robots, last_.search.states);
     return reached;
@@ -78,7 +79,8 @@ class Search {
       reached.text = fmt::format("{}: {} rounds of {} robot{} are too many runs to look at", row.name,
                                  *options.rounds, first, first == 1 ? "" : "s");
     } else {
-      const std::string scope = first == searched ? fmt::format("N = {}", searched) : fmt::format("N <= {}", searched);
+      const std::string scope =
+          first == searched ? fmt::format("N = {}", searched) : fmt::format("N <= {}", searched);
       reached.text = Nothing(row.name, scope, options);
     }
     return reached;
@@ -97,12 +99,14 @@ class Search {
     return options;
   }
 
-  std::string Nothing(const std::string& name, const std::string& scope, const ExplorationOptions& options) const {
-    return fmt::format("{}: no run of up to {} rounds violates it for {} ({} states{})", name, *options.rounds,
-                       scope, states_, last_.search.ending == explore::Ending::kDepth ||
-                                               last_.search.ending == explore::Ending::kComplete
-                                           ? ""
-                                           : ", cut off");
+  std::string Nothing(const std::string& name, const std::string& scope,
+                      const ExplorationOptions& options) const {
+    return fmt::format(
+        "{}: no run of up to {} rounds violates it for {} ({} states{})", name, *options.rounds, scope,
+        states_,
+        last_.search.ending == explore::Ending::kDepth || last_.search.ending == explore::Ending::kComplete
+            ? ""
+            : ", cut off");
   }
 
   // Without text: nothing was found.
@@ -122,8 +126,8 @@ class Search {
     return reached;
   }
 
-  void Found(koord::Row& row, size_t robots, const ExplorationOptions& options, const diag::Diagnostics& found,
-             Reached& reached) {
+  void Found(koord::Row& row, size_t robots, const ExplorationOptions& options,
+             const diag::Diagnostics& found, Reached& reached) {
     // Over real numbers, a run in which doubles were rounded may not exist.
     if (!last_.rounded) {
       row.verdict = koord::Verdict::kRefuted;

@@ -27,11 +27,11 @@ struct ReachRequest {
   ExplorationOptions exploration;
 };
 
-/// Searches for runs that violate what was not proved: for an invariant that is not inductive, if `rounds` are
-/// given, the team of its counterexample, with the values of its parameters and sensors where the program
+/// Searches for runs that violate what was not proved: for an invariant that is not inductive, if `rounds`
+/// are given, the team of its counterexample, with the values of its parameters and sensors where the program
 /// declares none; for one that could not be decided, teams of one to three robots. An invariant that a run
-/// violates becomes refuted. What is found is a diagnostic as well. Without `rounds`, ends within a second for
-/// each invariant.
+/// violates becomes refuted. What is found is a diagnostic as well. Without `rounds`, ends within a second
+/// for each invariant.
 std::vector<Reached> SearchWitnesses(const koord::Model& model, koord::Report& report,
                                      const ReachRequest& request, diag::Diagnostics& diagnostics);
 

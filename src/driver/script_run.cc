@@ -212,9 +212,8 @@ class Runner {
     outcome_.text += "(";
     for (size_t i = 0; i < command.terms.size(); ++i) {
       const auto value = expr::Evaluate(script_.arena, command.terms[i], valuation);
-      outcome_.text +=
-          fmt::format("{}({} {})", i == 0 ? "" : "\n ", printer_.Print(command.terms[i]),
-                      value ? Literal(*value) : Nearly(command.terms[i]));
+      outcome_.text += fmt::format("{}({} {})", i == 0 ? "" : "\n ", printer_.Print(command.terms[i]),
+                                   value ? Literal(*value) : Nearly(command.terms[i]));
     }
     outcome_.text += ")\n";
   }

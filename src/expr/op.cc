@@ -107,8 +107,7 @@ std::string_view Name(Elementary function) {
 }
 
 size_t Arity(Elementary function) {
-  const bool binary =
-      function == Elementary::kMin || function == Elementary::kMax ||
+  const bool binary = function == Elementary::kMin || function == Elementary::kMax ||
                       function == Elementary::kAtan2 || function == Elementary::kPower;
   return binary ? 2 : 1;
 }

@@ -42,9 +42,9 @@ enum class Op : uint8_t {
 /// The functions of reals that have no exact arithmetic. min, max, atan2 and power have two arguments, the
 /// others one. A partial function has no value outside its domain: an atomic formula about it is false there.
 ///
-/// power(x, y) is exp(y log x) for x > 0; 0 for x = 0 < y and 1 for y = 0, whatever x; a product of x's or its
-/// reciprocal where y is an integer. Elsewhere (0 to a negative power, a negative base with an exponent that
-/// is no integer) it is some number, as 1 / 0 is (docs/adr/0017-powers.md).
+/// power(x, y) is exp(y log x) for x > 0; 0 for x = 0 < y and 1 for y = 0, whatever x; a product of x's or
+/// its reciprocal where y is an integer. Elsewhere (0 to a negative power, a negative base with an exponent
+/// that is no integer) it is some number, as 1 / 0 is (docs/adr/0017-powers.md).
 enum class Elementary : uint8_t {
   kSqrt,
   kAbs,

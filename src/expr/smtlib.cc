@@ -12,14 +12,15 @@ namespace {
 // What SMT-LIB, Z3 and cvc5 call something themselves: quotes do not make another symbol of it.
 bool MeansSomething(std::string_view name) {
   static const std::set<std::string_view> kWords{
-      "_",      "as",     "let",    "par",    "match",   "forall",  "exists",  "true",    "false",   "not",
-      "and",    "or",     "xor",    "ite",    "implies", "iff",     "if",      "distinct", "div",    "mod",
-      "rem",    "abs",    "to_real", "to_int", "is_int",  "select",  "store",   "const",   "map",    "default",
-      "is",     "update", "sin",    "cos",    "tan",     "csc",     "sec",     "cot",     "arcsin",  "arccos",
-      "arctan", "exp",    "log",    "sqrt",   "pi",      "pow",     "power",   "min",     "max",     "asin",
-      "acos",   "atan",   "atan2",  "sinh",   "cosh",    "tanh",    "euler",   "divisible", "iand",  "pow2",
-      "lambda", "choice", "tuple",  "Bool",   "Int",     "Real",    "Array",   "String",  "Set",     "Tuple",
-      "assert", "push",   "pop",    "exit",   "echo",    "reset"};
+      "_",     "as",    "let",     "par",       "match",   "forall",  "exists", "true",   "false",
+      "not",   "and",   "or",      "xor",       "ite",     "implies", "iff",    "if",     "distinct",
+      "div",   "mod",   "rem",     "abs",       "to_real", "to_int",  "is_int", "select", "store",
+      "const", "map",   "default", "is",        "update",  "sin",     "cos",    "tan",    "csc",
+      "sec",   "cot",   "arcsin",  "arccos",    "arctan",  "exp",     "log",    "sqrt",   "pi",
+      "pow",   "power", "min",     "max",       "asin",    "acos",    "atan",   "atan2",  "sinh",
+      "cosh",  "tanh",  "euler",   "divisible", "iand",    "pow2",    "lambda", "choice", "tuple",
+      "Bool",  "Int",   "Real",    "Array",     "String",  "Set",     "Tuple",  "assert", "push",
+      "pop",   "exit",  "echo",    "reset"};
   return kWords.contains(name);
 }
 

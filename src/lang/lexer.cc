@@ -17,9 +17,9 @@ using diag::Span;
 
 // Longest first.
 constexpr std::array<std::string_view, 38> kPunctuation = {
-    "<=>", "..", "==", "!=", "<=", ">=", "&&", "||", "<<", "->", "++", "+=", "=>", "(",
-    ")",   "[",  "]",  "{",  "}",  ":",  ";",  ",",  ".",  "+",  "-",  "*",  "/",
-    "%",   "=",  "<",  ">",  "!",  "&",  "|",  "?",  "@",  "'",  "\\"};
+    "<=>", "..", "==", "!=", "<=", ">=", "&&", "||", "<<", "->", "++", "+=", "=>",
+    "(",   ")",  "[",  "]",  "{",  "}",  ":",  ";",  ",",  ".",  "+",  "-",  "*",
+    "/",   "%",  "=",  "<",  ">",  "!",  "&",  "|",  "?",  "@",  "'",  "\\"};
 
 struct Spelling {
   std::string_view sign;
@@ -262,7 +262,8 @@ class Lexer {
       return Emit(TokenKind::kInt, begin, at_, "0");
     }
     if (options_.doubles && is_float && !IsExact(text_.substr(begin, at_ - begin))) {
-      diagnostics_.Report(Kind::kSyntaxNumber, Range(begin, at_), "this number is too large or too small to be read")
+      diagnostics_
+          .Report(Kind::kSyntaxNumber, Range(begin, at_), "this number is too large or too small to be read")
           .Help("zero, and sizes from 2.3e-308 to 1.7e308, can be read");
       return Emit(TokenKind::kFloat, begin, at_, "0.0");
     }

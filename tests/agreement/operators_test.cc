@@ -1,6 +1,6 @@
-// Every operator at special points (signs, zeros, whole numbers as Real and Int, huge, tiny, branch cuts) through
-// every engine: exact values, doubles, interval search, Z3, and the checker of refutations, each against MPFR and
-// the definitions (docs/adr/0005 and 0017).
+// Every operator at special points (signs, zeros, whole numbers as Real and Int, huge, tiny, branch cuts)
+// through every engine: exact values, doubles, interval search, Z3, and the checker of refutations, each
+// against MPFR and the definitions (docs/adr/0005 and 0017).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <mpfr.h>
@@ -69,18 +69,24 @@ Meaning Power(double x, double y, Number& out) {
 
 const std::vector<Operator>& Operators() {
   static const std::vector<Operator> kAll{
-      {"sqrt", 1, false, [](double x, double, Number& r) { return x < 0 ? Meaning::kNone : Unary(mpfr_sqrt, x, r); }},
+      {"sqrt", 1, false,
+       [](double x, double, Number& r) { return x < 0 ? Meaning::kNone : Unary(mpfr_sqrt, x, r); }},
       {"abs", 1, true, [](double x, double, Number& r) { return Unary(mpfr_abs, x, r); }},
       {"sin", 1, false, [](double x, double, Number& r) { return Unary(mpfr_sin, x, r); }},
       {"cos", 1, false, [](double x, double, Number& r) { return Unary(mpfr_cos, x, r); }},
       {"tan", 1, false, [](double x, double, Number& r) { return Unary(mpfr_tan, x, r); }},
       {"arcsin", 1, false,
-       [](double x, double, Number& r) { return std::fabs(x) > 1 ? Meaning::kNone : Unary(mpfr_asin, x, r); }},
+       [](double x, double, Number& r) {
+         return std::fabs(x) > 1 ? Meaning::kNone : Unary(mpfr_asin, x, r);
+       }},
       {"arccos", 1, false,
-       [](double x, double, Number& r) { return std::fabs(x) > 1 ? Meaning::kNone : Unary(mpfr_acos, x, r); }},
+       [](double x, double, Number& r) {
+         return std::fabs(x) > 1 ? Meaning::kNone : Unary(mpfr_acos, x, r);
+       }},
       {"arctan", 1, false, [](double x, double, Number& r) { return Unary(mpfr_atan, x, r); }},
       {"exp", 1, false, [](double x, double, Number& r) { return Unary(mpfr_exp, x, r); }},
-      {"log", 1, false, [](double x, double, Number& r) { return x <= 0 ? Meaning::kNone : Unary(mpfr_log, x, r); }},
+      {"log", 1, false,
+       [](double x, double, Number& r) { return x <= 0 ? Meaning::kNone : Unary(mpfr_log, x, r); }},
       {"sinh", 1, false, [](double x, double, Number& r) { return Unary(mpfr_sinh, x, r); }},
       {"tanh", 1, false, [](double x, double, Number& r) { return Unary(mpfr_tanh, x, r); }},
       {"+", 2, true, [](double x, double y, Number& r) { return Binary(mpfr_add, x, y, r); }},
@@ -105,10 +111,12 @@ std::string Text(double value) {
   return std::signbit(value) && value != 0 ? fmt::format("(- {})", size) : size;
 }
 
-/// x, and y if there is one, have these values, as Int where `whole`; z is the result of the operator, and `claim`
-/// is said of it.
+/// x, and y if there is one, have these values, as Int where `whole`; z is the result of the operator, and
+/// `claim` is said of it.
 std::string Script(const Operator& op, double x, double y, bool whole, const std::string& claim) {
-  const auto sort = [&](double v) { return whole && v == std::floor(v) && std::fabs(v) < 1e6 ? "Int" : "Real"; };
+  const auto sort = [&](double v) {
+    return whole && v == std::floor(v) && std::fabs(v) < 1e6 ? "Int" : "Real";
+  };
   std::string text = fmt::format("(declare-fun x () {})\n(declare-fun z () Real)\n", sort(x));
   const auto equals = [&](const char* name, double v) {
     const bool integer = std::string(sort(v)) == "Int";
@@ -146,7 +154,8 @@ class Engines {
     }
     icp::Options options;
     options.max_boxes = 5'000;
-    const Answer answer = icp::IcpSolver(options).Check(query, {std::chrono::milliseconds(2000), false, true}, {});
+    const Answer answer =
+        icp::IcpSolver(options).Check(query, {std::chrono::milliseconds(2000), false, true}, {});
     if (const auto* unsat = std::get_if<Unsat>(&answer)) {
       EXPECT_EQ(testing_support::Rejected(unsat->certificate), "") << Where(text);
       ++certified;
@@ -202,17 +211,20 @@ void Examine(const Operator& op, double x, double y, bool whole, Engines& engine
     facts += "(fact " + good.substr(at + 8, end - at - 9) + ")\n";
   }
   const std::string variables = op.arity == 2 ? "x y z" : "x z";
-  EXPECT_NE(testing_support::Rejected(facts + fmt::format("(search ({}) \".\")\n", variables)), "") << Where(facts);
+  EXPECT_NE(testing_support::Rejected(facts + fmt::format("(search ({}) \".\")\n", variables)), "")
+      << Where(facts);
   EXPECT_NE(testing_support::Rejected(good + "(contradiction)\n"), "") << Where(good);
 }
 
 // What is known exactly, and what doubles make of it.
 void Compare(const Operator& op, double x, double y) {
   static const std::map<std::string, expr::Elementary> kNamed{
-      {"sqrt", expr::Elementary::kSqrt},     {"abs", expr::Elementary::kAbs},     {"sin", expr::Elementary::kSin},
-      {"cos", expr::Elementary::kCos},       {"tan", expr::Elementary::kTan},     {"arcsin", expr::Elementary::kAsin},
-      {"arccos", expr::Elementary::kAcos},   {"arctan", expr::Elementary::kAtan}, {"exp", expr::Elementary::kExp},
-      {"log", expr::Elementary::kLog},       {"min", expr::Elementary::kMin},     {"max", expr::Elementary::kMax},
+      {"sqrt", expr::Elementary::kSqrt},     {"abs", expr::Elementary::kAbs},
+      {"sin", expr::Elementary::kSin},       {"cos", expr::Elementary::kCos},
+      {"tan", expr::Elementary::kTan},       {"arcsin", expr::Elementary::kAsin},
+      {"arccos", expr::Elementary::kAcos},   {"arctan", expr::Elementary::kAtan},
+      {"exp", expr::Elementary::kExp},       {"log", expr::Elementary::kLog},
+      {"min", expr::Elementary::kMin},       {"max", expr::Elementary::kMax},
       {"arctan2", expr::Elementary::kAtan2}, {"^", expr::Elementary::kPower}};
   const auto function = kNamed.find(op.name);
   if (function == kNamed.end()) return;
@@ -249,8 +261,30 @@ TEST_P(Points, AreWhatTheDefinitionSays) {
   const Operator& op = Operators()[GetParam()];
   Engines engines;
   if (op.arity == 1) {
-    for (const double x : {-1e300, -1e9, -65537.0, -100.0, -3.0, -2.0, -1.5, -1.0, -0.5, -1e-9, -1e-300, 0.0, 1e-300,
-                           1e-9, 0.5, 1.0, 1.5707963267948966, 2.0, 3.0, 3.141592653589793, 4.0, 100.0, 65537.0, 1e9,
+    for (const double x : {-1e300,
+                           -1e9,
+                           -65537.0,
+                           -100.0,
+                           -3.0,
+                           -2.0,
+                           -1.5,
+                           -1.0,
+                           -0.5,
+                           -1e-9,
+                           -1e-300,
+                           0.0,
+                           1e-300,
+                           1e-9,
+                           0.5,
+                           1.0,
+                           1.5707963267948966,
+                           2.0,
+                           3.0,
+                           3.141592653589793,
+                           4.0,
+                           100.0,
+                           65537.0,
+                           1e9,
                            1e300}) {
       Compare(op, x, 0);
       Examine(op, x, 0, false, engines);

@@ -103,10 +103,12 @@ size_t Checker::FunctionNamed(const std::string& name, size_t arity, Span span) 
 void Checker::UnknownFunction(const std::string& name, Span span) {
   if (name.find('.') != std::string::npos) return;  // a member of a type that nobody looks into
   for (const Item& item : program_.items) {
-    if (const auto* summary = std::get_if<SummaryDef>(&item); summary != nullptr && summary->function == name) return;
+    if (const auto* summary = std::get_if<SummaryDef>(&item); summary != nullptr && summary->function == name)
+      return;
     const auto* explore = std::get_if<ExploreDef>(&item);
     const auto describes = [&](const ExploreEntry& entry) { return entry.name == name; };
-    if (explore != nullptr && std::any_of(explore->entries.begin(), explore->entries.end(), describes)) return;
+    if (explore != nullptr && std::any_of(explore->entries.begin(), explore->entries.end(), describes))
+      return;
   }
   auto& report = diagnostics_.Report(Kind::kKoordUnknownFunction, span,
                                      fmt::format("`{}` is declared nowhere: it may return anything", name));
@@ -116,8 +118,8 @@ void Checker::UnknownFunction(const std::string& name, Span span) {
   std::string near = lang::Suggest(name, known);
   // Words of other languages for what is here.
   static const std::map<std::string, std::string> kOtherWords{
-      {"distance", "dist"}, {"norm", "dist"}, {"midpoint", "mid"}, {"length", "len"}, {"size", "len"},
-      {"fabs", "abs"},      {"minimum", "min"}, {"maximum", "max"}, {"point", "pos"},  {"Point", "pos"}};
+      {"distance", "dist"}, {"norm", "dist"},   {"midpoint", "mid"}, {"length", "len"}, {"size", "len"},
+      {"fabs", "abs"},      {"minimum", "min"}, {"maximum", "max"},  {"point", "pos"},  {"Point", "pos"}};
   if (const auto it = kOtherWords.find(name); it != kOtherWords.end()) near = it->second;
   if (!near.empty()) {
     report.Help(fmt::format("did you mean `{}`?", near)).Fix(span, near);

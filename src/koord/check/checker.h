@@ -117,15 +117,15 @@ class Checker {
   std::vector<const ExploreDef*> explorations_;
   std::vector<uint32_t> scope_;            // bindings that are visible, innermost last
   std::map<int, std::set<size_t>> calls_;  // function (-1: none) -> functions that its body calls
-  std::set<size_t> looking_at_;  // functions, which may call themselves until that is reported
+  std::set<size_t> looking_at_;            // functions, which may call themselves until that is reported
   Place place_ = Place::kSpec;
   int function_ = -1;
   int loops_ = 0;
   int atomic_ = 0;
   bool old_allowed_ = false;
   bool may_choose_ = false;  // in the statements of an event or `init`
-  TypeId grid_element_;   // of a `grid(...)`, where one may stand
-  bool writing_ = false;  // the target of an assignment may be an actuator
+  TypeId grid_element_;      // of a `grid(...)`, where one may stand
+  bool writing_ = false;     // the target of an assignment may be an actuator
 };
 
 }  // namespace rondo::koord

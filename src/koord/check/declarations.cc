@@ -258,8 +258,9 @@ bool Checker::IsFixed(ExprId id) const {
   if (ref.kind == RefKind::kVariable) return model_.variables[ref.index].kind == VariableKind::kParam;
   if (ref.kind == RefKind::kSystemSize || e.kind == lang::ExprKind::kInt || e.kind == lang::ExprKind::kError)
     return true;
-  const bool arithmetic = e.kind == lang::ExprKind::kUnary ||
-                          (e.kind == lang::ExprKind::kBinary && (e.text == "+" || e.text == "-" || e.text == "*"));
+  const bool arithmetic =
+      e.kind == lang::ExprKind::kUnary ||
+      (e.kind == lang::ExprKind::kBinary && (e.text == "+" || e.text == "-" || e.text == "*"));
   return arithmetic && std::all_of(e.args.begin(), e.args.end(), [this](ExprId a) { return IsFixed(a); });
 }
 

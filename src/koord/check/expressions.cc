@@ -224,13 +224,15 @@ TypeId Checker::Any(const lang::Expr& e) {
     const TypeId list = Expr(e.args[0]);
     element = types.FreshVariable();
     if (!types.Unify(list, types.List(element))) {
-      return Mismatch(exprs_[e.args[0]].span, fmt::format("`any` chooses from a list or a range such as `0..5`, not from a `{}`",
-                                                          types.Name(list)));
+      return Mismatch(exprs_[e.args[0]].span,
+                      fmt::format("`any` chooses from a list or a range such as `0..5`, not from a `{}`",
+                                  types.Name(list)));
     }
   }
   const auto named = TypeNamed(e.text);
   if (named && !(e.args.size() > 1 ? types.Unify(element, *named) : types.Coerce(element, *named)))
-    return Mismatch(e.span, fmt::format("these are values of type `{}`, not `{}`", types.Name(element), e.text));
+    return Mismatch(e.span,
+                    fmt::format("these are values of type `{}`, not `{}`", types.Name(element), e.text));
   return element;
 }
 

@@ -103,7 +103,8 @@ bool Checker::SpeaksOfRobot(ExprId id) {
   if (e.kind == ExprKind::kPid) return true;
   if (ref.kind == RefKind::kVariable && e.kind != ExprKind::kCall) {
     const VariableKind kind = model_.variables[ref.index].kind;
-    if (kind == VariableKind::kLocal || kind == VariableKind::kSensor || kind == VariableKind::kActuator) return true;
+    if (kind == VariableKind::kLocal || kind == VariableKind::kSensor || kind == VariableKind::kActuator)
+      return true;
   }
   if (ref.kind == RefKind::kFunction && e.kind == ExprKind::kCall && SpeaksOfRobot(ref.index)) return true;
   return std::any_of(e.args.begin(), e.args.end(), [this](ExprId a) { return SpeaksOfRobot(a); });
@@ -124,8 +125,8 @@ void Checker::RestrictInitial(ExprId id, const Variable& variable) {
                      e.kind != ExprKind::kCall && model_.variables[ref.index].kind != VariableKind::kParam;
   const bool port = ref.kind == RefKind::kFunction && model_.functions[ref.index].port >= 0;
   const bool calls = ref.kind == RefKind::kFunction && e.kind == ExprKind::kCall && !port;
-  const bool robot =
-      !variable.PerRobot() && (e.kind == ExprKind::kPid || (calls && SpeaksOfRobot(static_cast<size_t>(ref.index))));
+  const bool robot = !variable.PerRobot() &&
+                     (e.kind == ExprKind::kPid || (calls && SpeaksOfRobot(static_cast<size_t>(ref.index))));
   if (reads || port || robot) {
     diagnostics_
         .Report(Kind::kKoordSpecScope, e.span,

@@ -37,7 +37,8 @@ std::vector<TermId> Distances::Axioms(const std::vector<TermId>& formulas) {
   for (size_t i = 0; detail_ == Detail::kAll && i < points_.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {
       for (size_t k = 0; k < j && triangles_.size() < kMostTriangles; ++k) {
-        const int sides = known(points_[i], points_[j]) + known(points_[i], points_[k]) + known(points_[j], points_[k]);
+        const int sides =
+            known(points_[i], points_[j]) + known(points_[i], points_[k]) + known(points_[j], points_[k]);
         if (sides < 2 || !triangles_.insert({points_[k], points_[j], points_[i]}).second) continue;
         OfTriangle(points_[k], points_[j], points_[i], axioms);
       }
@@ -80,7 +81,8 @@ TermId AlongAxes(Vocabulary& vocabulary, const std::vector<TermId>& formulas) {
   std::unordered_set<TermId> seen;
   for (const TermId formula : formulas) {
     expr::VisitPostorder(arena, formula, seen, [&](TermId t) {
-      if (arena.op(t) == Op::kApply && arena.symbol_of(t) == dist && !arena.IsOpen(t)) applications.push_back(t);
+      if (arena.op(t) == Op::kApply && arena.symbol_of(t) == dist && !arena.IsOpen(t))
+        applications.push_back(t);
     });
   }
   std::vector<TermId> all;

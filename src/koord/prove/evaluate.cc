@@ -22,9 +22,8 @@ bool Among(const expr::Arena& arena, TermId part, TermId whole) {
   };
   const std::vector<TermId> known = parts(whole);
   const std::vector<TermId> wanted = parts(part);
-  return std::all_of(wanted.begin(), wanted.end(), [&](TermId t) {
-    return std::find(known.begin(), known.end(), t) != known.end();
-  });
+  return std::all_of(wanted.begin(), wanted.end(),
+                     [&](TermId t) { return std::find(known.begin(), known.end(), t) != known.end(); });
 }
 
 }  // namespace
@@ -390,9 +389,9 @@ TermId Executor::Any(ExprId id, const lang::Expr& e) {
   }
   const TermId some = arena_.Le(first, last);
   Check(CheckKind::kChoice, exprs_[id].span, some);
-  frame_.effect->chosen =
-      arena_.And(frame_.effect->chosen,
-                 arena_.Implies(arena_.And(Reached(), some), arena_.And(arena_.Le(first, pick), arena_.Le(pick, last))));
+  frame_.effect->chosen = arena_.And(
+      frame_.effect->chosen,
+      arena_.Implies(arena_.And(Reached(), some), arena_.And(arena_.Le(first, pick), arena_.Le(pick, last))));
   return list.valid() ? arena_.At(list, pick) : pick;
 }
 

@@ -383,8 +383,8 @@ void Executor::AssignCell(ExprId target, TermId value) {
   AssignRoot(*root, value, {}, std::move(indices));
 }
 
-// Rules SvarAssign and LvarAssign. `robot`: of the cell of an `allread` variable. `indices`: of the part of an
-// array that is written.
+// Rules SvarAssign and LvarAssign. `robot`: of the cell of an `allread` variable. `indices`: of the part of
+// an array that is written.
 void Executor::AssignRoot(size_t v, TermId value, TermId robot, std::vector<TermId> indices) {
   State& state = *frame_.state;
   const Variable& variable = model_.variables[v];

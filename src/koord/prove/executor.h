@@ -43,7 +43,7 @@ struct Effect {
   TermId enabled;
   TermId locks;  ///< does it take the lock of the event?
   TermId stops;
-  TermId chosen;  ///< what `any` chooses is among its values
+  TermId chosen;              ///< what `any` chooses is among its values
   std::vector<TermId> value;  ///< afterwards: its own cell of what exists for each robot, else the whole
   std::vector<SharedWrite> writes;
   std::vector<DefinednessCheck> checks;

@@ -38,9 +38,7 @@ bool Alternates(const expr::Arena& arena, TermId formula) {
 }  // namespace
 
 Extremes::Extremes(Vocabulary& vocabulary)
-    : vocabulary_(vocabulary),
-      arena_(vocabulary.arena()),
-      robot_(arena_.FreshBound("robot", arena_.Int())) {}
+    : vocabulary_(vocabulary), arena_(vocabulary.arena()), robot_(arena_.FreshBound("robot", arena_.Int())) {}
 
 std::vector<Assertion> Extremes::Axioms(const std::vector<Assertion>& formulas) {
   std::vector<TermId> values;

@@ -106,7 +106,7 @@ void Problems::Instantiate(Problem& problem) {
     fallback.push_back(arena_.Sub(vocabulary_.robots(), arena_.IntNumber(1)));
   }
   for (int pass = 0; pass < 4; ++pass) {
-    solve::Ground ground = 
+    solve::Ground ground =
         solve::Instantiate(arena_, problem.assertions, {{arena_.Int(), fallback}}, limits, witnesses_);
     std::vector<TermId> formulas;
     for (const Assertion& a : ground.assertions) formulas.push_back(a.formula);
@@ -120,7 +120,8 @@ void Problems::Instantiate(Problem& problem) {
   if (vocabulary_.uses_dist()) AddDistances(problem);
 }
 
-// What is known of distances speaks of further distances, but of no further points: soon there is no more to say.
+// What is known of distances speaks of further distances, but of no further points: soon there is no more to
+// say.
 void Problems::AddDistances(Problem& problem) {
   Distances known(vocabulary_, distances);
   std::vector<TermId> formulas;
@@ -138,7 +139,8 @@ void Problems::AddDistances(Problem& problem) {
 Problem Problems::Initially(size_t invariant) {
   const View& first = round_.start();
   const TermId refuted = Refute(theory_.Invariant(invariant, first));
-  return WithWitnesses(refuted, [&](const std::vector<TermId>& others) { return InitiallyFor(refuted, others); });
+  return WithWitnesses(refuted,
+                       [&](const std::vector<TermId>& others) { return InitiallyFor(refuted, others); });
 }
 
 Problem Problems::InitiallyFor(TermId refuted, const std::vector<TermId>& others) {
@@ -187,7 +189,8 @@ TermId Problems::Succeeds(const std::vector<TermId>& participants) {
 // A goal that denies that somebody exists says nothing of a robot in particular. Those who may show the
 // contrary are the robots that existed before, those that participants read (`x[(w + 1) % N_sys]`), and last
 // writers: all whose state the instances mention become participants.
-Problem Problems::WithWitnesses(TermId refuted, const std::function<Problem(const std::vector<TermId>&)>& state) {
+Problem Problems::WithWitnesses(TermId refuted,
+                                const std::function<Problem(const std::vector<TermId>&)>& state) {
   std::vector<TermId> others;
   Problem problem = state(others);
   constexpr int kPasses = 2;
@@ -208,6 +211,11 @@ Problem Problems::Step(size_t invariant, std::optional<size_t> action, bool reac
   return WithWitnesses(refuted, [&](const std::vector<TermId>& others) {
     return StepFor(refuted, others, action, reachable);
   });
+}
+
+bool Problems::HasCases(size_t invariant) {
+  round_.Relate(Refute(theory_.Invariant(invariant, round_.end())), {});
+  return !round_.readers().empty();
 }
 
 // Robots whose state occurs in the query and that are no participants.
@@ -240,7 +248,7 @@ Problem Problems::StepFor(TermId refuted, const std::vector<TermId>& others, std
   std::vector<Assertion> assertions{{refuted, ""}};
   Append(assertions, round_.Relate(refuted, Everyone(), others));
   const std::vector<TermId> participants = round_.participants();
-  if (action) assertions.push_back({First(*action, participants), ""});
+  if (action) assertions.push_back({First(*action, round_.readers()), ""});
   if (options_.expand) assertions.push_back({Succeeds(participants), ""});
   for (const TermId r : participants) {
     std::vector<Assertion>& promises = promises_[r];

@@ -45,17 +45,21 @@ class Problems {
   /// `action` is the first, in program order, that a participant takes (0: all skip; none: any round).
   /// `reachable`: the state is initial as well.
   Problem Step(size_t invariant, std::optional<size_t> action, bool reachable);
+  /// Are there robots that the denied invariant reads, whose actions are the cases of `Step`? Else a round
+  /// has one case: what any robot does.
+  bool HasCases(size_t invariant);
   /// [Follows] at any moment, invariant i follows from the premises: invariants that hold at the same moment.
   Problem Follows(size_t invariant, const std::vector<size_t>& premises);
-  /// [Def] every operation of the action, or of a part of the specification, is defined wherever it is reached.
+  /// [Def] every operation of the action, or of a part of the specification, is defined wherever it is
+  /// reached.
   Problem Defined(size_t place);
   /// The same for one operation of one robot: one of `ChecksAt(place, robot)`.
   Problem DefinedAt(size_t place, const DefinednessCheck& check, TermId robot);
   /// The operations of `place`, an action or `specification(part)`, as `robot` runs it.
   std::vector<DefinednessCheck> ChecksAt(size_t place, TermId robot);
   std::vector<DefinednessCheck> ChecksOf(size_t place) { return ChecksAt(place, robot_); }
-  /// The parts of the specification, as places behind those of the actions. Every operation must have a value,
-  /// where what is assumed of the same part holds.
+  /// The parts of the specification, as places behind those of the actions. Every operation must have a
+  /// value, where what is assumed of the same part holds.
   enum class Part : uint8_t { kInvariants, kPorts, kInitial, kFacts };
   static constexpr size_t kParts = 4;
   size_t specification(Part part) const { return round_.actions().size() + static_cast<size_t>(part); }
@@ -94,7 +98,8 @@ class Problems {
   void AddDistances(Problem& problem);
   Problem WithWitnesses(TermId refuted, const std::function<Problem(const std::vector<TermId>&)>& state);
   Problem InitiallyFor(TermId refuted, const std::vector<TermId>& others);
-  Problem StepFor(TermId refuted, const std::vector<TermId>& others, std::optional<size_t> action, bool reachable);
+  Problem StepFor(TermId refuted, const std::vector<TermId>& others, std::optional<size_t> action,
+                  bool reachable);
   std::vector<TermId> Witnesses(const Problem& problem);
   TermId Succeeds(const std::vector<TermId>& participants);
   TermId First(size_t action, const std::vector<TermId>& participants);

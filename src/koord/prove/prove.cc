@@ -133,14 +133,37 @@ class Prover {
     }
   }
 
-  // A team of a fixed size has finitely many robots. (That operations are defined is asked of an arbitrary one.)
+  // A team of a fixed size has finitely many robots. Rounds are spelled out as a whole: the cases of a round
+  // are told apart by what the robots do that the goal reads, which are others where all are named. (That
+  // operations are defined is asked of an arbitrary robot.)
   void SpellOut(const std::vector<Task*>& tasks) {
     if (!options_.robots || !CanExpand(model_, *options_.robots)) return;
-    std::vector<Task*> rest;
+    std::vector<Task*> initially;
+    std::vector<Task> rounds;
     for (Task* task : tasks) {
-      if (!task->Proved() && task->kind != TaskKind::kDefined) rest.push_back(task);
+      if (task->Proved()) continue;
+      if (task->kind == TaskKind::kInitially) initially.push_back(task);
+      const auto same = [&](const Task& r) { return r.subject == task->subject; };
+      const bool round = task->kind == TaskKind::kStep || task->kind == TaskKind::kRound;
+      if (round && std::ranges::none_of(rounds, same))
+        rounds.push_back({TaskKind::kRound,
+                          task->subject,
+                          0,
+                          InvariantName(model_, task->subject) + " (round)",
+                          solve::Unknown{"not asked"},
+                          0,
+                          {}});
     }
-    Solve(rest, Effort::kAll);
+    std::vector<Task*> todo = initially;
+    for (Task& round : rounds) todo.push_back(&round);
+    Solve(todo, Effort::kAll);
+    for (const Task& round : rounds) {
+      if (!round.Proved()) continue;
+      for (Task& task : tasks_) {
+        if ((task.kind == TaskKind::kStep || task.kind == TaskKind::kRound) && task.subject == round.subject)
+          task.answer = round.answer;
+      }
+    }
   }
 
   // For each invariant, of the first obligation that is not proved.
@@ -158,9 +181,8 @@ class Prover {
         options_.progress(i, first.size(), "looking for a counterexample of " + task.name);
       }
       const solve::Budget budget{std::min(options_.timeout, std::chrono::milliseconds(2000)), false};
-      const auto action = task.kind == TaskKind::kInitially ? std::nullopt : std::optional(task.action);
-      auto witness =
-          FindWitness(model_, task.subject, action, options_.robots, *options_.solver, budget, options_.stop);
+      auto witness = FindWitness(model_, task.subject, task.kind == TaskKind::kInitially, options_.robots,
+                                 *options_.solver, budget, options_.stop);
       const std::scoped_lock lock(mutex);
       if (witness) witnesses_.emplace(task.subject, std::move(*witness));
     });
@@ -272,7 +294,8 @@ class Prover {
         return;
       case TaskKind::kSomeValues:
         if (unsat != nullptr)
-          reporter.Contradiction(fmt::format("what `{}` computes cannot exist", problems.NameOf(task.action)), unsat->core);
+          reporter.Contradiction(fmt::format("what `{}` computes cannot exist", problems.NameOf(task.action)),
+                                 unsat->core);
         return;
       case TaskKind::kSomeEnabled:
         if (unsat != nullptr) never_.emplace_back(task.action, unsat->core);

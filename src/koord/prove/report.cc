@@ -125,21 +125,26 @@ void Reporter::FailedInvariant(size_t i) {
   const InvariantDef& def = *model_.invariants[i];
   const auto it = witnesses_.find(i);
   const bool confirmed = it != witnesses_.end() && it->second.confirmed;
-  for (Cell& cell : row.cells) {
-    if (cell.outcome == Outcome::kProved) continue;
-    const bool this_one =
-        confirmed &&
-        cell.action == it->second.action;
-    cell.outcome = this_one ? Outcome::kFailed : Outcome::kUnknown;
-    if (!this_one && cell.reason.empty()) cell.reason = "a possible counterexample could not be confirmed";
+  const auto open = [](const Cell& c) { return c.outcome != Outcome::kProved; };
+  auto failed = row.cells.end();
+  if (confirmed) {
+    const auto breaks = [&](const Cell& c) { return open(c) && c.action == it->second.action; };
+    failed = std::find_if(row.cells.begin(), row.cells.end(), breaks);
+    // The round may break the invariant by a later action than its first, whose own case is proved.
+    if (failed == row.cells.end()) failed = std::find_if(row.cells.begin(), row.cells.end(), open);
+  }
+  for (auto cell = row.cells.begin(); cell != row.cells.end(); ++cell) {
+    if (!open(*cell)) continue;
+    cell->outcome = cell == failed ? Outcome::kFailed : Outcome::kUnknown;
+    if (cell != failed && cell->reason.empty())
+      cell->reason = "a possible counterexample could not be confirmed";
   }
   if (confirmed) {
     Told(row, def, it->second);
     return;
   }
-  const auto open = std::find_if(row.cells.begin(), row.cells.end(),
-                                 [](const Cell& c) { return c.outcome != Outcome::kProved; });
-  Undecided(row, *open, model_.program->exprs[def.body].span, it == witnesses_.end() ? nullptr : &it->second);
+  Undecided(row, *std::find_if(row.cells.begin(), row.cells.end(), open),
+            model_.program->exprs[def.body].span, it == witnesses_.end() ? nullptr : &it->second);
 }
 
 void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
@@ -246,7 +251,8 @@ void Reporter::Undecided(Row& row, const Cell& cell, Span span, const Witness* c
     const bool time = cell.reason.find("time-out") != std::string::npos;
     const std::string_view robots = "fix the number of robots (`--robots 3`)";
     if (!options_.robots) {
-      report.Help(time ? fmt::format("give it more time (`--timeout 60`), or {}", robots) : std::string(robots));
+      report.Help(time ? fmt::format("give it more time (`--timeout 60`), or {}", robots)
+                       : std::string(robots));
     } else if (time) {
       report.Help("give it more time (`--timeout 60`)");
     }

@@ -33,7 +33,8 @@ Round::Round(Vocabulary& vocabulary, Executor& executor, Kind kind)
     }
   }
   std::vector<std::string> members;  // an event may be called `skip`
-  for (const std::string& action : actions_) members.push_back((members.empty() ? "no event " : "event ") + action);
+  for (const std::string& action : actions_)
+    members.push_back((members.empty() ? "no event " : "event ") + action);
   action_sort_ = arena_.Enum(init ? "action at the start" : "action of a round", std::move(members));
   act_ = arena_.Declare(init ? "acts at the start" : "acts in a round", {arena_.Int()}, action_sort_);
   turn_ = arena_.Declare("place in the interleaving", {arena_.Int()}, arena_.Int());
@@ -85,8 +86,8 @@ void Round::FindReads(TermId goal) {
   FindCells(goal);
 }
 
-// What every robot may write: whole variables, and cells of arrays, however deep. (Of an array that is read as
-// a whole nothing is known at the end: nothing can be concluded from it.)
+// What every robot may write: whole variables, and cells of arrays, however deep. (Of an array that is read
+// as a whole nothing is known at the end: nothing can be concluded from it.)
 void Round::FindCells(TermId goal) {
   std::unordered_set<TermId> seen;
   expr::VisitPostorder(arena_, goal, seen, [&](TermId t) {
@@ -98,9 +99,8 @@ void Round::FindCells(TermId goal) {
     for (size_t v = 0; v < model_.variables.size(); ++v) {
       if (model_.variables[v].kind != VariableKind::kAllwrite || root != end_.value[v]) continue;
       if (arena_.sort(arena_.sort_of(t)).kind == expr::SortKind::kArray) continue;
-      const bool known = std::any_of(writers_.begin(), writers_.end(), [&](const LastWriter& w) {
-        return w.variable == v && w.cell == cell;
-      });
+      const bool known = std::any_of(writers_.begin(), writers_.end(),
+                                     [&](const LastWriter& w) { return w.variable == v && w.cell == cell; });
       if (known) continue;
       const TermId robot = arena_.FreshConstant("last writer of " + model_.variables[v].name, arena_.Int());
       writers_.push_back({v, std::move(cell), robot});
@@ -243,12 +243,13 @@ std::vector<solve::Assertion> Round::Relate(TermId goal, const std::vector<TermI
   writers_.clear();
   whole_team_ = !everyone.empty();
   for (const TermId r : everyone) Participate(r);
-  for (const TermId r : others) Participate(r);
   FindReads(goal);
   // Of a round that is told in full, every shared variable matters.
   for (size_t v = 0; !everyone.empty() && v < model_.variables.size(); ++v) {
     if (model_.variables[v].kind == VariableKind::kAllwrite) FindReads(end_.value[v]);
   }
+  readers_ = participants_;
+  for (const TermId r : others) Participate(r);
   std::vector<solve::Assertion> result;
   for (const TermId r : participants_) result.push_back({StateOf(r), ""});
   result.push_back({Locks(), ""});

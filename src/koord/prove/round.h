@@ -44,6 +44,9 @@ class Round {
   std::vector<solve::Assertion> Relate(TermId goal, const std::vector<TermId>& everyone,
                                        const std::vector<TermId>& others = {});
   const std::vector<TermId>& participants() const { return participants_; }
+  /// The participants without `others`. They follow from the goal (and the team, where that is told in full)
+  /// alone, so cases by what they do fit together, whoever else takes part in the proof of one.
+  const std::vector<TermId>& readers() const { return readers_; }
 
  private:
   struct LastWriter {
@@ -80,6 +83,7 @@ class Round {
   std::vector<Effect> effects_;  // for `self_`, by action; empty for `skip`
   std::map<std::pair<size_t, TermId>, Effect> instances_;
   std::vector<TermId> participants_;
+  std::vector<TermId> readers_;
   bool whole_team_ = false;  // are the participants all robots?
   std::vector<LastWriter> writers_;
 };

@@ -17,7 +17,8 @@ int Depth(const Model& model, ExprId id) {
   for (const ExprId arg : e.args) depth = std::max(depth, Depth(model, arg));
   if (const auto it = model.domains.find(id); it != model.domains.end()) {
     for (size_t b = 0; b < it->second.kinds.size(); ++b) {
-      if (it->second.kinds[b] == DomainKind::kRobots) depth += static_cast<int>(it->second.bindings[b].size());
+      if (it->second.kinds[b] == DomainKind::kRobots)
+        depth += static_cast<int>(it->second.bindings[b].size());
     }
   }
   return depth;
@@ -76,13 +77,14 @@ std::vector<Task> ListTasks(Problems& problems) {
 std::vector<Task> SplitRounds(std::vector<Task> tasks, Problems& problems) {
   std::vector<Task> result;
   for (Task& task : tasks) {
-    if (task.kind != TaskKind::kRound || task.Proved()) {
+    if (task.kind != TaskKind::kRound || task.Proved() || !problems.HasCases(task.subject)) {
       result.push_back(std::move(task));
       continue;
     }
     for (const size_t a : Columns(problems)) {
       const std::string invariant = InvariantName(problems.vocabulary().model(), task.subject);
-      const std::string name = a == 0 ? invariant + " (skip)" : invariant + "." + problems.round().actions()[a];
+      const std::string name =
+          a == 0 ? invariant + " (skip)" : invariant + "." + problems.round().actions()[a];
       result.push_back({TaskKind::kStep, task.subject, a, name, solve::Unknown{"not asked"}, 0, {}});
     }
   }

@@ -23,8 +23,8 @@ enum class TaskKind : uint8_t {
   kNow,
 };
 
-/// How many instances of quantifiers a question gets; each effort includes the one before. kAll: of a team of a
-/// fixed number of robots, every robot by itself.
+/// How many instances of quantifiers a question gets; each effort includes the one before. kAll: of a team of
+/// a fixed number of robots, every robot by itself.
 enum class Effort : uint8_t { kFew, kMore, kMost, kAll };
 
 struct Task {
@@ -48,7 +48,8 @@ struct Task {
 std::vector<Task> ListTasks(Problems& problems);
 /// A round that was not proved as a whole becomes one step for each action.
 std::vector<Task> SplitRounds(std::vector<Task> tasks, Problems& problems);
-/// Is a team of this size small enough to spell out every quantifier over robots (at most 10^5 instances of any)?
+/// Is a team of this size small enough to spell out every quantifier over robots (at most 10^5 instances of
+/// any)?
 bool CanExpand(const Model& model, int64_t robots);
 /// The actions in the order in which reports show them: events, then `skip`.
 std::vector<size_t> Columns(Problems& problems);

@@ -9,7 +9,8 @@ using lang::TypeKind;
 Vocabulary::Vocabulary(expr::Arena& arena, const Model& model, std::optional<int64_t> robots)
     : arena_(arena), model_(model), fixed_(robots) {
   robots_stop_ = RobotsStop(model);
-  robots_ = robots ? arena.IntNumber(*robots) : arena.Variable(arena.Declare("number of robots", {}, arena.Int()));
+  robots_ =
+      robots ? arena.IntNumber(*robots) : arena.Variable(arena.Declare("number of robots", {}, arena.Int()));
 }
 
 SortId Vocabulary::SortOf(TypeId type) {

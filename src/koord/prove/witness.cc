@@ -94,6 +94,17 @@ class Storyteller {
     return state;
   }
 
+  // The first in program order that some robot takes; 0: all skip.
+  size_t FirstAction(const solve::Sat& sat) {
+    Round& round = problems_.round();
+    for (size_t a = 1; a < round.actions().size(); ++a) {
+      for (const TermId robot : robots_) {
+        if (IsTrue(sat, round.Acts(robot, a))) return a;
+      }
+    }
+    return 0;
+  }
+
   bool Moved(const solve::Sat& sat) const { return IsTrue(sat, problems_.round().moved()); }
 
   std::string Tell(const solve::Sat& sat, bool initial) {
@@ -325,8 +336,8 @@ bool OthersCanBeCopies(const expr::Arena& arena, const Problem& problem, Problem
   });
 }
 
-// Does a quantified assertion speak of the distances of points that have no name? A model may take any function
-// for those, and nothing says that the true one would do.
+// Does a quantified assertion speak of the distances of points that have no name? A model may take any
+// function for those, and nothing says that the true one would do.
 bool AllPointsHaveDistances(Problems& problems, const Problem& problem) {
   const expr::Arena& arena = problems.vocabulary().arena();
   const expr::SymbolId dist = problems.vocabulary().Dist();
@@ -341,14 +352,13 @@ bool AllPointsHaveDistances(Problems& problems, const Problem& problem) {
 }
 
 // A team of `n`, every quantifier over robots spelled out; or, for a large team, only those who matter.
-std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::optional<size_t> action, int64_t n,
-                               bool expand, const solve::Solver& solver, const solve::Budget& budget,
+std::optional<Witness> TryTeam(const Model& model, size_t invariant, bool initial, int64_t n, bool expand,
+                               const solve::Solver& solver, const solve::Budget& budget,
                                const base::StopToken& stop) {
   expr::Arena arena;
   diag::Diagnostics ignored;  // the symbolic run reported the same
   Problems problems(arena, model, {n, expand}, ignored);
   problems.limits.rounds = 5;
-  const bool initial = !action.has_value();
   const auto attempt = [&](const Problem& problem, bool reachable) -> std::optional<Witness> {
     Storyteller storyteller(model, problems, arena, invariant, problem.participants);
     const bool complete = problem.complete || (!expand && OthersCanBeCopies(arena, problem, problems));
@@ -369,7 +379,7 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::option
     }
     if (!found || !distances) found = Confirm(problem, wanted, small, complete, solver, budget, stop);
     if (!found) return std::nullopt;
-    return Witness{action,
+    return Witness{initial ? std::nullopt : std::optional(storyteller.FirstAction(found->sat)),
                    found->confirmed && distances && !problems.vocabulary().uses_texts(),
                    reachable,
                    !initial && storyteller.Moved(found->sat),
@@ -378,9 +388,10 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::option
                    storyteller.State(found->sat, initial, n)};
   };
   if (initial) return attempt(problems.Initially(invariant), true);
-  auto witness = attempt(problems.Step(invariant, *action, false), false);
+  // Any round: which of its cases could not be proved does not matter, where one breaks the invariant.
+  auto witness = attempt(problems.Step(invariant, std::nullopt, false), false);
   if (witness && witness->confirmed && !problems.has_init()) {
-    auto real = attempt(problems.Step(invariant, *action, true), true);
+    auto real = attempt(problems.Step(invariant, std::nullopt, true), true);
     if (real && real->confirmed) return real;
   }
   return witness;
@@ -388,18 +399,18 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, std::option
 
 }  // namespace
 
-std::optional<Witness> FindWitness(const Model& model, size_t invariant, std::optional<size_t> action,
+std::optional<Witness> FindWitness(const Model& model, size_t invariant, bool initial,
                                    std::optional<int64_t> robots, const solve::Solver& solver,
                                    const solve::Budget& budget, const base::StopToken& stop) {
   static constexpr int64_t kLargest = 8;
   const base::StopToken limited = stop.WithDeadline(base::StopToken::Clock::now() + budget.time);
   if (robots && *robots > kLargest)
-    return TryTeam(model, invariant, action, *robots, false, solver, budget, limited);
+    return TryTeam(model, invariant, initial, *robots, false, solver, budget, limited);
   std::optional<Witness> best;
   int unconfirmed = 0;
   for (int64_t n = robots.value_or(1); n <= robots.value_or(4) && unconfirmed < 2 && !limited.StopRequested();
        ++n) {
-    auto witness = TryTeam(model, invariant, action, n, true, solver, budget, limited);
+    auto witness = TryTeam(model, invariant, initial, n, true, solver, budget, limited);
     if (!witness) continue;
     if (witness->confirmed) return witness;
     // What could not be confirmed for two sizes will not be for a third: the functions are too much for the

@@ -117,7 +117,8 @@ bool Machine::Unpack(const Shape& shape, size_t level, Word list, Word*& words) 
     words = std::copy(items.begin(), items.end(), words);
     return true;
   }
-  return std::all_of(items.begin(), items.end(), [&](Word item) { return Unpack(shape, level + 1, item, words); });
+  return std::all_of(items.begin(), items.end(),
+                     [&](Word item) { return Unpack(shape, level + 1, item, words); });
 }
 
 // One function: the state of the machine stays in registers, and a switch is what compilers make fast.

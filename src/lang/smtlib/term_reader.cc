@@ -122,7 +122,8 @@ expr::TermId TermReader::Symbol(const SExpr& e) {
     return arena_.Number(integer ? arena_.Int() : arena_.Real(), *number);
   }
   if (std::isdigit(static_cast<unsigned char>(e.text[0])) || e.text[0] == '#') {
-    diagnostics_.Report(Kind::kSmtUnsupported, e.span, fmt::format("`{}` is no number that can be read", e.text))
+    diagnostics_
+        .Report(Kind::kSmtUnsupported, e.span, fmt::format("`{}` is no number that can be read", e.text))
         .Help("numbers are written 12, 1.5 or 1e-3, with exponents up to 400");
     return {};
   }

@@ -68,7 +68,7 @@ class TermReader {
   std::map<std::string, Macro, std::less<>> macros_;
   std::vector<std::map<std::string, TermId, std::less<>>> scopes_;  // of let and of parameters
   std::vector<uint32_t> depths_;                                    // by term
-  std::vector<uint64_t> factors_;  // of products, by term
+  std::vector<uint64_t> factors_;                                   // of products, by term
   size_t expansions_ = 0;
   size_t scope_floor_ = 0;  // parameters hide what is around a use of a macro
 };

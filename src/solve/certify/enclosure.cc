@@ -175,14 +175,14 @@ Enclosure Power(const Enclosure& a, unsigned n) {
   return r;
 }
 
-// For a > 0 it is monotone in a for each b, and in b for each a, so that its ends lie in corners; at the corners
-// where a is 0 or infinite, MPFR gives the limits.
+// For a > 0 it is monotone in a for each b, and in b for each a, so that its ends lie in corners; at the
+// corners where a is 0 or infinite, MPFR gives the limits.
 Enclosure RealPower(const Enclosure& a, const Enclosure& b) {
   if (a.IsEmpty() || b.IsEmpty()) return Enclosure::Empty();
   if (mpfr_sgn(a.lo_) < 0) {
     // A whole exponent of a negative base, if it is the only one.
-    const bool whole = mpfr_equal_p(b.lo_, b.hi_) != 0 && mpfr_integer_p(b.lo_) != 0 && mpfr_sgn(b.lo_) >= 0 &&
-                       mpfr_cmp_ui(b.lo_, 1000) <= 0;
+    const bool whole = mpfr_equal_p(b.lo_, b.hi_) != 0 && mpfr_integer_p(b.lo_) != 0 &&
+                       mpfr_sgn(b.lo_) >= 0 && mpfr_cmp_ui(b.lo_, 1000) <= 0;
     if (!whole) return Enclosure();
     const auto n = static_cast<unsigned>(mpfr_get_ui(b.lo_, MPFR_RNDN));
     return n == 0 ? Enclosure::Interval(1, 1) : Power(a, n);
@@ -303,8 +303,8 @@ Enclosure Tan(const Enclosure& a) {
   return Increasing(a, mpfr_tan);
 }
 
-// On a box away from the cut {y = 0, x <= 0}, extrema lie in its corners; also on one that touches the cut from
-// above, without the origin: on the cut the angle is pi.
+// On a box away from the cut {y = 0, x <= 0}, extrema lie in its corners; also on one that touches the cut
+// from above, without the origin: on the cut the angle is pi.
 Enclosure Atan2(const Enclosure& y, const Enclosure& x) {
   if (y.IsEmpty() || x.IsEmpty()) return Enclosure::Empty();
   Enclosure r;

@@ -188,7 +188,8 @@ void Facts::AddWindow(AtomId variable, const Rational& lo, const Rational& hi) {
   for (const FormulaId f : formulas_) {
     if (!periodic.Look(f)) throw Rejection("the variable occurs outside sines and cosines");
   }
-  // Full turns are irrational: a window as wide as a number above is wider, which leaves room for strict bounds.
+  // Full turns are irrational: a window as wide as a number above is wider, which leaves room for strict
+  // bounds.
   static const Rational kMoreThanTwoPi = *Rational::Parse("6.2831853071796");  // 2 pi = 6.28318530717958...
   if (hi - lo < periodic.turns() * kMoreThanTwoPi) throw Rejection("the window is narrower than a period");
   const Poly x{{Monomial{variable}, Rational(1)}};

@@ -21,9 +21,9 @@ class Facts {
   bool Known(FormulaId formula) const;
   /// Do the facts contradict each other?
   bool contradiction() const { return contradiction_; }
-  /// Adds lo <= variable <= hi. Rejection if the facts may have a solution and yet none in this window: they must
-  /// not change when a period, no more than hi - lo, is added to the variable, but for a bound on one side that
-  /// the window respects.
+  /// Adds lo <= variable <= hi. Rejection if the facts may have a solution and yet none in this window: they
+  /// must not change when a period, no more than hi - lo, is added to the variable, but for a bound on one
+  /// side that the window respects.
   void AddWindow(AtomId variable, const Rational& lo, const Rational& hi);
   /// Replaces the variable in all facts. Rejection if `variable = value` is not known.
   void Substitute(AtomId variable, PolyId value);

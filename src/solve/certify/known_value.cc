@@ -73,6 +73,7 @@ std::optional<Rational> KnownValue(Elementary function, const std::vector<Ration
     case Elementary::kPower:
       if (args[1].IsZero()) return one;
       if (x.IsZero()) return args[1] > zero ? std::optional(zero) : std::nullopt;
+      if (x == one) return one;
       return WholePower(x, args[1]);
     case Elementary::kCount_:
       break;

@@ -80,7 +80,8 @@ class Occurrences {
 
 }  // namespace
 
-std::optional<Rational> PeriodOf(const expr::Arena& arena, const std::vector<TermId>& terms, TermId variable) {
+std::optional<Rational> PeriodOf(const expr::Arena& arena, const std::vector<TermId>& terms,
+                                 TermId variable) {
   Occurrences occurrences(arena, variable);
   for (const TermId t : terms) {
     if (!occurrences.Periodic(t)) return std::nullopt;

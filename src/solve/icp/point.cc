@@ -21,8 +21,8 @@ Truth Not(Truth t) {
   return t == Truth::kTrue ? Truth::kFalse : t == Truth::kFalse ? Truth::kTrue : Truth::kUndecided;
 }
 
-// Angles beyond what interval arithmetic tells apart are brought near zero exactly: by whole turns, pi between
-// two rationals.
+// Angles beyond what interval arithmetic tells apart are brought near zero exactly: by whole turns, pi
+// between two rationals.
 Interval WithoutTurns(Interval a) {
   constexpr double kLarge = 0x1p15;
   constexpr double kLargest = 0x1p100;

@@ -126,8 +126,8 @@ class Builder {
     return Push(NodeOp::kChoose, a, b, static_cast<uint32_t>(tape_.conditions.size() - 1));
   }
 
-  // x^y by cases (docs/adr/0017-powers.md). Of a base that is not positive, only 0^y for y > 0 is told: the rest
-  // may be any number.
+  // x^y by cases (docs/adr/0017-powers.md). Of a base that is not positive, only 0^y for y > 0 is told: the
+  // rest may be any number.
   uint32_t Power(TermId x, TermId y) {
     const TermId zero = arena_.Number(arena_.Real(), Rational(0));
     tape_.partial = true;

@@ -104,8 +104,8 @@ Report PortfolioSolver::Decide(const Query& query, const Budget& budget, const b
     });
   }
   for (const Solver* other : options_.others)
-    engines.emplace_back(
-        other->name(), [&, other](const base::StopToken& race) { return other->Check(query, rest, race); });
+    engines.emplace_back(other->name(),
+                         [&, other](const base::StopToken& race) { return other->Check(query, rest, race); });
   std::vector<Outcome> outcomes;
   auto answers = Race(options_.compare).Run(engines, stop, outcomes);
   report.outcomes.insert(report.outcomes.end(), outcomes.begin(), outcomes.end());

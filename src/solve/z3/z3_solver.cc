@@ -21,8 +21,8 @@ constexpr std::chrono::milliseconds kGrace{300};
 
 std::atomic<bool> abandoned{false};
 
-/// One question on a thread of its own. Z3 keeps no time-out in some of its loops, and does not always heed an
-/// interrupt: then the thread is left behind, with all that it works on.
+/// One question on a thread of its own. Z3 keeps no time-out in some of its loops, and does not always heed
+/// an interrupt: then the thread is left behind, with all that it works on.
 class Job : public std::enable_shared_from_this<Job> {
  public:
   explicit Job(const expr::Arena& arena) : translate(arena, context) {}
@@ -106,7 +106,8 @@ Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop
     }
     solver.add(::z3::implies(it->second, formula));
   }
-  // Evaluating a term in a model has no time limit: what is wanted gets a name, and the model knows its value.
+  // Evaluating a term in a model has no time limit: what is wanted gets a name, and the model knows its
+  // value.
   for (const expr::TermId t : query.wanted) {
     const expr::SortKind kind = query.arena->sort(query.arena->sort_of(t)).kind;
     const ::z3::expr value = translate(t);

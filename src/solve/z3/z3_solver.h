@@ -5,8 +5,8 @@
 namespace rondo::solve::z3 {
 
 /// Z3 in this process, one context for each call. Handles everything the terms can say; lists are
-/// uninterpreted (assert `expr::ListAxioms`). Unsatisfiable cores are by group. A call ends within a third of a
-/// second of its deadline, whether Z3 does or not.
+/// uninterpreted (assert `expr::ListAxioms`). Unsatisfiable cores are by group. A call ends within a third of
+/// a second of its deadline, whether Z3 does or not.
 class Z3Solver : public Solver {
  public:
   std::string name() const override;
