@@ -347,7 +347,7 @@ TEST(ExploreAgreement, WhatIsProvedIsNeverViolated) {
 TEST(ExploreAgreement, ReductionsLoseNothing) {
   size_t complete = 0;
   size_t symmetric = 0;
-  for (uint64_t seed = 10'001; seed <= 10'000 + Cases(300); ++seed) {
+  for (uint64_t seed = 10'001; seed <= 10'000 + Cases(60); ++seed) {
     const std::string text = Texts(seed).Whole();
     Loaded loaded(text);
     ASSERT_TRUE(loaded.good());
@@ -371,8 +371,8 @@ TEST(ExploreAgreement, ReductionsLoseNothing) {
       for (const auto& state : renamed.states) EXPECT_TRUE(all.states.contains(state)) << text;
     }
   }
-  EXPECT_GT(complete, 100U);
-  EXPECT_GT(symmetric, 10U);
+  EXPECT_GT(complete, 40U);
+  EXPECT_GT(symmetric, 5U);
 }
 
 TEST(ExploreAgreement, ASimulatedRoundIsOneOfTheRoundsThatAreExplored) {
