@@ -50,9 +50,8 @@ class Search {
     reached.text = Nothing(row.name, fmt::format("N = {}", robots), options);
     if (last_.search.ending == explore::Ending::kComplete)
       reached.text = fmt::format(
-          "{}: no run violates it for N = {} with these values ({} states): a further invariant may exclude "
-          "the "
-          "state",
+          "{}: no run violates it for N = {} with these values ({} states): a further invariant may "
+          "exclude the state",
           row.name, robots, last_.search.states);
     return reached;
   }

@@ -24,14 +24,6 @@ bool MeansSomething(std::string_view name) {
   return kWords.contains(name);
 }
 
-std::string Quote(std::string_view name) {
-  const bool plain =
-      !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
-      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") ==
-          std::string_view::npos;
-  return plain ? std::string(name) : fmt::format("|{}|", name);
-}
-
 std::string NumberText(const Arena& arena, TermId t) {
   const Rational& value = arena.number(t);
   const bool negative = value < Rational(0);
@@ -46,12 +38,21 @@ std::string NumberText(const Arena& arena, TermId t) {
 
 }  // namespace
 
-std::string Quoted(std::string_view name) { return Quote(name); }
+std::string Quoted(std::string_view name) {
+  const bool plain =
+      !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
+      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") ==
+          std::string_view::npos;
+  return plain ? std::string(name) : fmt::format("|{}|", name);
+}
 
 std::string SmtPrinter::SymbolName(SymbolId id) const {
   const std::string& name = arena_.symbol(id).name;
-  const bool other = functions_ == SmtFunctions::kSpelledOut && MeansSomething(name);
-  return other ? fmt::format("|{} (a name)|", name) : Quote(name);
+  constexpr std::string_view kMark = " (a name)";
+  // A name that has the mark gets another one, so that different names stay different.
+  const bool marked =
+      functions_ == SmtFunctions::kSpelledOut && (MeansSomething(name) || name.ends_with(kMark));
+  return Quoted(marked ? fmt::format("{}{}", name, kMark) : name);
 }
 
 std::string SmtPrinter::SortName(SortId id) const {
@@ -59,12 +60,12 @@ std::string SmtPrinter::SortName(SortId id) const {
   if (s.kind == SortKind::kArray)
     return fmt::format("(Array {} {})", SortName(s.parts[0]), SortName(s.parts[1]));
   if (s.kind == SortKind::kBool || s.kind == SortKind::kInt || s.kind == SortKind::kReal) return s.name;
-  return Quote("sort " + s.name);
+  return Quoted("sort " + s.name);
 }
 
 std::string SmtPrinter::FieldName(SortId record, uint32_t field) const {
   const Sort& s = arena_.sort(record);
-  return Quote(fmt::format("field {}.{}", s.name, s.names[field]));
+  return Quoted(fmt::format("field {}.{}", s.name, s.names[field]));
 }
 
 std::string SmtPrinter::Print(TermId t, bool definition) const {
@@ -85,7 +86,7 @@ std::string SmtPrinter::Print(TermId t, bool definition) const {
       return NumberText(arena_, t);
     case Op::kMember: {
       const Sort& s = arena_.sort(term.sort);
-      return Quote(fmt::format("{}.{}", s.name, s.names[term.payload]));
+      return Quoted(fmt::format("{}.{}", s.name, s.names[term.payload]));
     }
     case Op::kVariable:
       return SymbolName(SymbolId(term.payload));
@@ -131,11 +132,11 @@ std::string SmtPrinter::Print(TermId t, bool definition) const {
       return text + fmt::format(") {})", Print(args.back()));
     }
     case Op::kRecord:
-      return call(Quote("make " + arena_.sort(term.sort).name));
+      return call(Quoted("make " + arena_.sort(term.sort).name));
     case Op::kField:
       return call(FieldName(arena_.sort_of(args[0]), term.payload));
     case Op::kListMake: {
-      const std::string name = Quote(ListFunctionName(arena_, term.op, term.sort, args.size()));
+      const std::string name = Quoted(ListFunctionName(arena_, term.op, term.sort, args.size()));
       return args.empty() ? name : call(name);
     }
     case Op::kListLength:
@@ -143,7 +144,7 @@ std::string SmtPrinter::Print(TermId t, bool definition) const {
     case Op::kListAppend:
     case Op::kListRemove:
     case Op::kListSet:
-      return call(Quote(ListFunctionName(arena_, term.op, arena_.sort_of(args[0]), args.size())));
+      return call(Quoted(ListFunctionName(arena_, term.op, arena_.sort_of(args[0]), args.size())));
   }
   return "";
 }
@@ -166,7 +167,7 @@ class Declarations {
     const auto args = arena_.args(t);
     const auto list_function = [&](SortId list, const std::vector<SortId>& parameters, SortId result) {
       const std::string name = ListFunctionName(arena_, term.op, list, args.size());
-      if (symbols_.insert(name).second) Function(Quote(name), parameters, result);
+      if (symbols_.insert(name).second) Function(Quoted(name), parameters, result);
     };
     switch (term.op) {
       case Op::kListMake:
@@ -198,7 +199,7 @@ class Declarations {
     if (!sorts_.insert(id).second) return;
     const Sort& s = arena_.sort(id);
     for (const SortId part : s.parts) NeedSort(part);
-    const std::string name = Quote("sort " + s.name);
+    const std::string name = Quoted("sort " + s.name);
     switch (s.kind) {
       case SortKind::kBool:
       case SortKind::kInt:
@@ -208,7 +209,7 @@ class Declarations {
       case SortKind::kEnum: {
         std::string members;
         for (const std::string& member : s.names)
-          members += fmt::format(" ({})", Quote(s.name + "." + member));
+          members += fmt::format(" ({})", Quoted(s.name + "." + member));
         text_ += fmt::format("(declare-datatypes (({} 0)) (({})))\n", name, members.substr(1));
         break;
       }
@@ -218,7 +219,7 @@ class Declarations {
           fields += fmt::format(" ({} {})", printer_.FieldName(id, i), printer_.SortName(s.parts[i]));
         }
         text_ +=
-            fmt::format("(declare-datatypes (({} 0)) ((({}{}))))\n", name, Quote("make " + s.name), fields);
+            fmt::format("(declare-datatypes (({} 0)) ((({}{}))))\n", name, Quoted("make " + s.name), fields);
         break;
       }
       case SortKind::kList:

@@ -26,12 +26,11 @@ struct InstantiationLimits {
 
 /// Quantifier-free assertions that follow from `assertions` (so that unsatisfiability carries over):
 /// - existential variables become constants;
-/// - universal variables are replaced by the closed terms that stand where the variable stands: a variable
-/// that is an
-///   argument of f, or an index of an array, takes every closed term that occurs at the same place of f or of
-///   that array; a number that is compared with a closed term by equality takes that term. For formulas in
-///   which variables occur only in such places this loses nothing (Ge & de Moura, Complete instantiation for
-///   quantified formulas, CAV 2009), up to `limits`;
+/// - universal variables are replaced by the closed terms that stand where the variable stands: a
+///   variable that is an argument of f, or an index of an array, takes every closed term that occurs at
+///   the same place of f or of that array; a number that is compared with a closed term by equality
+///   takes that term. For formulas in which variables occur only in such places this loses nothing (Ge &
+///   de Moura, Complete instantiation for quantified formulas, CAV 2009), up to `limits`;
 /// - a variable in no such place takes the `fallback` terms of its sort;
 /// - quantifiers under equality or if-then-else are named by a Boolean constant.
 /// `complete` is false when something was left out, so that satisfiability need not carry over.
@@ -43,8 +42,7 @@ struct Ground {
 using Witnesses = std::unordered_map<expr::TermId, expr::TermId>;
 
 /// @param witnesses  constants of earlier calls, which are used again; new ones are added. Whoever states
-/// more
-///   about a question can then speak of the constants of the first attempt.
+///   more about a question can then speak of the constants of the first attempt.
 Ground Instantiate(expr::Arena& arena, const std::vector<Assertion>& assertions,
                    const std::map<expr::SortId, std::vector<expr::TermId>>& fallback,
                    const InstantiationLimits& limits, Witnesses& witnesses);

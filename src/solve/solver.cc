@@ -2,6 +2,12 @@
 
 namespace rondo::solve {
 
+std::vector<expr::TermId> Formulas(const std::vector<Assertion>& assertions) {
+  std::vector<expr::TermId> formulas;
+  for (const Assertion& a : assertions) formulas.push_back(a.formula);
+  return formulas;
+}
+
 std::string ToSmtLib(const Query& query, expr::SmtFunctions functions) {
   std::vector<expr::SmtAssertion> assertions;
   for (const Assertion& a : query.assertions) assertions.push_back({a.formula, a.group});

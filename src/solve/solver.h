@@ -22,6 +22,9 @@ struct Assertion {
   std::string group;
 };
 
+/// What is asserted, without the groups.
+std::vector<expr::TermId> Formulas(const std::vector<Assertion>& assertions);
+
 using Value = expr::Value;
 
 struct Query {
@@ -54,6 +57,7 @@ struct Sat {
 /// The engine gave up.
 struct Unknown {
   std::string reason;
+  bool timed_out = false;  ///< more time might have helped
 };
 
 /// Neither: a small box in which nothing could be excluded, and no solution was verified. Bounds of the

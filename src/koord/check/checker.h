@@ -98,10 +98,6 @@ class Checker {
   int FindFunction(const std::string& name) const;
 
   /// An initial value may mention parameters, functions and, where each robot has its own, `pid`.
-  /// Does a function speak of the robot that runs it, by itself or through others?
-  bool SpeaksOfRobot(size_t function);
-  bool SpeaksOfRobot(ExprId e);
-  bool SpeaksOfRobot(const std::vector<Stmt>& body);
   void RestrictInitial(ExprId e, const Variable& variable);
   /// Reports each name in `e` that this kind of specification must not mention.
   void RestrictScope(ExprId e, const AssumeDef* port, std::string_view what);
@@ -117,7 +113,6 @@ class Checker {
   std::vector<const ExploreDef*> explorations_;
   std::vector<uint32_t> scope_;            // bindings that are visible, innermost last
   std::map<int, std::set<size_t>> calls_;  // function (-1: none) -> functions that its body calls
-  std::set<size_t> looking_at_;            // functions, which may call themselves until that is reported
   Place place_ = Place::kSpec;
   int function_ = -1;
   int loops_ = 0;

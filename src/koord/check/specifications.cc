@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "koord/check/checker.h"
+#include "koord/check/mentions_robot.h"
 
 namespace rondo::koord {
 
@@ -87,37 +88,6 @@ void Checker::Summary(const SummaryDef& def) {
   RestrictScope(def.body, nullptr, "a summary");
 }
 
-bool Checker::SpeaksOfRobot(size_t function) {
-  const Function& f = model_.functions[function];
-  if (f.port >= 0) return true;
-  if (f.external() || !looking_at_.insert(function).second) return false;
-  const bool speaks = SpeaksOfRobot(f.def->body);
-  looking_at_.erase(function);
-  return speaks;
-}
-
-bool Checker::SpeaksOfRobot(ExprId id) {
-  if (!id.valid()) return false;
-  const lang::Expr& e = exprs_[id];
-  const Ref ref = model_.RefOf(id);
-  if (e.kind == ExprKind::kPid) return true;
-  if (ref.kind == RefKind::kVariable && e.kind != ExprKind::kCall) {
-    const VariableKind kind = model_.variables[ref.index].kind;
-    if (kind == VariableKind::kLocal || kind == VariableKind::kSensor || kind == VariableKind::kActuator)
-      return true;
-  }
-  if (ref.kind == RefKind::kFunction && e.kind == ExprKind::kCall && SpeaksOfRobot(ref.index)) return true;
-  return std::any_of(e.args.begin(), e.args.end(), [this](ExprId a) { return SpeaksOfRobot(a); });
-}
-
-bool Checker::SpeaksOfRobot(const std::vector<Stmt>& body) {
-  return std::any_of(body.begin(), body.end(), [this](const Stmt& s) {
-    return SpeaksOfRobot(s.value) || SpeaksOfRobot(s.target) ||
-           std::any_of(s.operands.begin(), s.operands.end(), [this](ExprId e) { return SpeaksOfRobot(e); }) ||
-           SpeaksOfRobot(s.body) || SpeaksOfRobot(s.orelse);
-  });
-}
-
 void Checker::RestrictInitial(ExprId id, const Variable& variable) {
   const lang::Expr& e = exprs_[id];
   const Ref ref = model_.RefOf(id);
@@ -126,7 +96,7 @@ void Checker::RestrictInitial(ExprId id, const Variable& variable) {
   const bool port = ref.kind == RefKind::kFunction && model_.functions[ref.index].port >= 0;
   const bool calls = ref.kind == RefKind::kFunction && e.kind == ExprKind::kCall && !port;
   const bool robot = !variable.PerRobot() &&
-                     (e.kind == ExprKind::kPid || (calls && SpeaksOfRobot(static_cast<size_t>(ref.index))));
+                     (e.kind == ExprKind::kPid || (calls && RobotMentions(model_).InFunction(ref.index)));
   if (reads || port || robot) {
     diagnostics_
         .Report(Kind::kKoordSpecScope, e.span,
@@ -170,7 +140,7 @@ void Checker::RestrictScope(ExprId root, const AssumeDef* port, std::string_view
       if (port != nullptr && port->when.valid()) refuse("what a planner returns is assumed without `when`");
     }
     const bool speaks = ref.kind == RefKind::kFunction && e.kind == ExprKind::kCall && !calls_port &&
-                        SpeaksOfRobot(static_cast<size_t>(ref.index));
+                        RobotMentions(model_).InFunction(ref.index);
     if ((e.kind == ExprKind::kPid || speaks) && port == nullptr) refuse("there is no robot here");
     for (const ExprId arg : e.args) visit(arg);
     for (const lang::Binder& b : e.binders) {

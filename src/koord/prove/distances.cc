@@ -1,6 +1,8 @@
 #include "koord/prove/distances.h"
 
 #include <algorithm>
+#include <functional>
+#include <unordered_set>
 
 #include "expr/substitute.h"
 
@@ -9,6 +11,23 @@ namespace rondo::koord {
 using expr::Op;
 using expr::Rational;
 
+namespace {
+
+// Calls `visit` once for each distance in the formulas, open or not. It must make no terms.
+void EachDistance(Vocabulary& vocabulary, const std::vector<TermId>& formulas,
+                  const std::function<void(TermId)>& visit) {
+  const expr::Arena& arena = vocabulary.arena();
+  const expr::SymbolId dist = vocabulary.Dist();
+  std::unordered_set<TermId> seen;
+  for (const TermId formula : formulas) {
+    expr::VisitPostorder(arena, formula, seen, [&](TermId t) {
+      if (arena.op(t) == Op::kApply && arena.symbol_of(t) == dist) visit(t);
+    });
+  }
+}
+
+}  // namespace
+
 TermId Distances::Distance(TermId p, TermId q) { return arena_.Apply(vocabulary_.Dist(), {p, q}); }
 
 // One term for both directions.
@@ -16,21 +35,20 @@ TermId Distances::Side(TermId p, TermId q) { return q < p ? Distance(q, p) : Dis
 
 std::vector<TermId> Distances::Axioms(const std::vector<TermId>& formulas) {
   std::vector<TermId> axioms;
-  const expr::SymbolId dist = vocabulary_.Dist();
-  std::unordered_set<TermId> seen;
+  std::vector<TermId> distances;
+  EachDistance(vocabulary_, formulas, [&](TermId t) {
+    if (!arena_.IsOpen(t)) distances.push_back(t);
+  });
   const auto learn = [&](TermId p) {
     if (std::find(points_.begin(), points_.end(), p) == points_.end()) points_.push_back(p);
   };
-  for (const TermId formula : formulas) {
-    expr::VisitPostorder(arena_, formula, seen, [&](TermId t) {
-      if (arena_.op(t) != Op::kApply || arena_.symbol_of(t) != dist || arena_.IsOpen(t)) return;
-      const TermId p = arena_.arg(t, 0);
-      const TermId q = arena_.arg(t, 1);
-      learn(p);
-      learn(q);
-      pairs_.insert({std::min(p, q), std::max(p, q)});
-      if (q < p && mirrored_.insert({p, q}).second) axioms.push_back(arena_.Eq(t, Distance(q, p)));
-    });
+  for (const TermId t : distances) {
+    const TermId p = arena_.arg(t, 0);
+    const TermId q = arena_.arg(t, 1);
+    learn(p);
+    learn(q);
+    pairs_.insert({std::min(p, q), std::max(p, q)});
+    if (q < p && mirrored_.insert({p, q}).second) axioms.push_back(arena_.Eq(t, Distance(q, p)));
   }
   const auto known = [&](TermId p, TermId q) { return pairs_.contains({std::min(p, q), std::max(p, q)}); };
   // Of a triangle, two sides are enough to speak of the third.
@@ -76,17 +94,12 @@ void Distances::OfPair(TermId p, TermId q, std::vector<TermId>& axioms) {
 
 TermId AlongAxes(Vocabulary& vocabulary, const std::vector<TermId>& formulas) {
   expr::Arena& arena = vocabulary.arena();
-  const expr::SymbolId dist = vocabulary.Dist();
-  std::vector<TermId> applications;
-  std::unordered_set<TermId> seen;
-  for (const TermId formula : formulas) {
-    expr::VisitPostorder(arena, formula, seen, [&](TermId t) {
-      if (arena.op(t) == Op::kApply && arena.symbol_of(t) == dist && !arena.IsOpen(t))
-        applications.push_back(t);
-    });
-  }
+  std::vector<TermId> distances;
+  EachDistance(vocabulary, formulas, [&](TermId t) {
+    if (!arena.IsOpen(t)) distances.push_back(t);
+  });
   std::vector<TermId> all;
-  for (const TermId t : applications) {
+  for (const TermId t : distances) {
     std::vector<TermId> same;
     for (uint32_t axis = 0; axis < 3; ++axis)
       same.push_back(arena.Eq(arena.Field(arena.arg(t, 0), axis), arena.Field(arena.arg(t, 1), axis)));
@@ -96,6 +109,12 @@ TermId AlongAxes(Vocabulary& vocabulary, const std::vector<TermId>& formulas) {
     all.push_back(arena.Or(either));
   }
   return arena.And(all);
+}
+
+bool HasDistanceOfAnyPoints(Vocabulary& vocabulary, const std::vector<TermId>& formulas) {
+  bool found = false;
+  EachDistance(vocabulary, formulas, [&](TermId t) { found = found || vocabulary.arena().IsOpen(t); });
+  return found;
 }
 
 bool Distances::IsMiddle(TermId m, TermId p, TermId q) {

@@ -47,4 +47,8 @@ class Distances {
 /// value, the true one: a model is a counterexample in space.
 TermId AlongAxes(Vocabulary& vocabulary, const std::vector<TermId>& formulas);
 
+/// Does a quantifier in `formulas` speak of the distances of points that have no name? A model may take any
+/// function for those, and nothing says that the true one would do.
+bool HasDistanceOfAnyPoints(Vocabulary& vocabulary, const std::vector<TermId>& formulas);
+
 }  // namespace rondo::koord

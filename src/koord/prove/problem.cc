@@ -108,9 +108,8 @@ void Problems::Instantiate(Problem& problem) {
   for (int pass = 0; pass < 4; ++pass) {
     solve::Ground ground =
         solve::Instantiate(arena_, problem.assertions, {{arena_.Int(), fallback}}, limits, witnesses_);
-    std::vector<TermId> formulas;
-    for (const Assertion& a : ground.assertions) formulas.push_back(a.formula);
-    const std::vector<TermId> axioms = expr::ListAxioms(arena_, formulas, problem.lists);
+    const std::vector<TermId> axioms =
+        expr::ListAxioms(arena_, solve::Formulas(ground.assertions), problem.lists);
     problem.query.arena = &arena_;
     problem.query.assertions = std::move(ground.assertions);
     problem.complete = ground.complete;
@@ -124,8 +123,7 @@ void Problems::Instantiate(Problem& problem) {
 // say.
 void Problems::AddDistances(Problem& problem) {
   Distances known(vocabulary_, distances);
-  std::vector<TermId> formulas;
-  for (const Assertion& a : problem.query.assertions) formulas.push_back(a.formula);
+  std::vector<TermId> formulas = solve::Formulas(problem.query.assertions);
   constexpr int kPasses = 4;
   for (int pass = 0; pass < kPasses && !formulas.empty(); ++pass) {
     formulas = known.Axioms(formulas);

@@ -146,13 +146,8 @@ class Prover {
       const auto same = [&](const Task& r) { return r.subject == task->subject; };
       const bool round = task->kind == TaskKind::kStep || task->kind == TaskKind::kRound;
       if (round && std::ranges::none_of(rounds, same))
-        rounds.push_back({TaskKind::kRound,
-                          task->subject,
-                          0,
-                          InvariantName(model_, task->subject) + " (round)",
-                          solve::Unknown{"not asked"},
-                          0,
-                          {}});
+        rounds.push_back(
+            {TaskKind::kRound, task->subject, 0, InvariantName(model_, task->subject) + " (round)"});
     }
     std::vector<Task*> todo = initially;
     for (Task& round : rounds) todo.push_back(&round);
@@ -240,6 +235,7 @@ class Prover {
       cell.core = unsat->core;
     } else if (const auto* unknown = std::get_if<solve::Unknown>(&task.answer)) {
       cell.reason = unknown->reason;
+      cell.timed_out = unknown->timed_out;
     } else {
       cell.outcome = Outcome::kFailed;
     }
@@ -303,13 +299,7 @@ class Prover {
       case TaskKind::kSomePromise: {
         if (unsat == nullptr) return;
         // A promise whose condition is never true promises nothing.
-        Task condition{TaskKind::kSomeCondition,
-                       task.subject,
-                       0,
-                       "sanity.condition",
-                       solve::Unknown{"not asked"},
-                       0,
-                       {}};
+        Task condition{TaskKind::kSomeCondition, task.subject, 0, "sanity.condition"};
         Solve({&condition}, Effort::kFew);
         if (!condition.Proved()) reporter.Contradiction("no controller can keep this promise", unsat->core);
         return;

@@ -38,6 +38,7 @@ struct Cell {
   std::string reason;             ///< why unknown
   std::vector<std::string> core;  ///< assumptions and invariants that the proof used
   double seconds = 0;
+  bool timed_out = false;  ///< is it unknown for want of time?
 };
 
 enum class Verdict : uint8_t {

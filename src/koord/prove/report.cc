@@ -198,9 +198,8 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
                                                          : "not replayed: " + replay.why);
   if (!witness.reachable)
     report.Note(
-        "this state may be unreachable: the induction could not exclude it; `rondo prove --reach 6` looks "
-        "for "
-        "a run to it");
+        "this state may be unreachable: the induction could not exclude it; `rondo prove --reach 6` "
+        "looks for a run to it");
   if (witness.environment) {
     report.Help("say what the controller guarantees: `assume M when ... always ...`");
   } else if (!witness.reachable) {
@@ -248,12 +247,11 @@ void Reporter::Undecided(Row& row, const Cell& cell, Span span, const Witness* c
   } else {
     report.Note(fmt::format("{}: {}", options_.solver->name(), cell.reason));
     // More time helps where time was short; a number, where there is none yet.
-    const bool time = cell.reason.find("time-out") != std::string::npos;
     const std::string_view robots = "fix the number of robots (`--robots 3`)";
     if (!options_.robots) {
-      report.Help(time ? fmt::format("give it more time (`--timeout 60`), or {}", robots)
-                       : std::string(robots));
-    } else if (time) {
+      report.Help(cell.timed_out ? fmt::format("give it more time (`--timeout 60`), or {}", robots)
+                                 : std::string(robots));
+    } else if (cell.timed_out) {
       report.Help("give it more time (`--timeout 60`)");
     }
   }

@@ -185,7 +185,7 @@ TermId Round::Urgency(TermId r) {
   std::vector<TermId> facts;
   for (size_t u = 1; u < actions_.size(); ++u) {
     if (!model_.events[u - 1]->urgent) continue;
-    const Effect urgent = EffectOf(u, r);
+    const Effect& urgent = EffectOf(u, r);
     const TermId waits = arena_.Not(urgent.enabled);
     // Another robot may hold the lock; of a whole team it is known whether one does.
     std::vector<TermId> holders;

@@ -45,7 +45,7 @@ std::vector<Task> ListTasks(Problems& problems) {
   const std::vector<std::string>& actions = problems.round().actions();
   std::vector<Task> tasks;
   const auto add = [&](TaskKind kind, size_t subject, size_t action, std::string name) {
-    tasks.push_back({kind, subject, action, std::move(name), solve::Unknown{"not asked"}, 0, {}});
+    tasks.push_back({kind, subject, action, std::move(name)});
   };
   for (size_t i = 0; i < problems.theory().invariants(); ++i) {
     const std::string name = InvariantName(problems.vocabulary().model(), i);
@@ -85,7 +85,7 @@ std::vector<Task> SplitRounds(std::vector<Task> tasks, Problems& problems) {
       const std::string invariant = InvariantName(problems.vocabulary().model(), task.subject);
       const std::string name =
           a == 0 ? invariant + " (skip)" : invariant + "." + problems.round().actions()[a];
-      result.push_back({TaskKind::kStep, task.subject, a, name, solve::Unknown{"not asked"}, 0, {}});
+      result.push_back({TaskKind::kStep, task.subject, a, name});
     }
   }
   return result;

@@ -34,7 +34,7 @@ struct Task {
   std::string name;  ///< of its file and progress line
   solve::Answer answer = solve::Unknown{"not asked"};
   double seconds = 0;
-  std::vector<size_t> premises;  ///< of kFollows: invariants that are proved by induction
+  std::vector<size_t> premises{};  ///< of kFollows: invariants that are proved by induction
 
   bool Proved() const { return std::holds_alternative<solve::Unsat>(answer); }
   /// Must it be unsatisfiable for the invariants to be proved? Otherwise it is a sanity check.

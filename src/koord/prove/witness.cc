@@ -336,21 +336,6 @@ bool OthersCanBeCopies(const expr::Arena& arena, const Problem& problem, Problem
   });
 }
 
-// Does a quantified assertion speak of the distances of points that have no name? A model may take any
-// function for those, and nothing says that the true one would do.
-bool AllPointsHaveDistances(Problems& problems, const Problem& problem) {
-  const expr::Arena& arena = problems.vocabulary().arena();
-  const expr::SymbolId dist = problems.vocabulary().Dist();
-  bool found = false;
-  std::unordered_set<TermId> seen;
-  for (const solve::Assertion& a : problem.assertions) {
-    expr::VisitPostorder(arena, a.formula, seen, [&](TermId t) {
-      found = found || (arena.op(t) == expr::Op::kApply && arena.symbol_of(t) == dist && arena.IsOpen(t));
-    });
-  }
-  return found;
-}
-
 // A team of `n`, every quantifier over robots spelled out; or, for a large team, only those who matter.
 std::optional<Witness> TryTeam(const Model& model, size_t invariant, bool initial, int64_t n, bool expand,
                                const solve::Solver& solver, const solve::Budget& budget,
@@ -369,13 +354,14 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, bool initia
     if (!distances) {
       // Distances along axes are what they are in space; of others, only some properties are known.
       Problem aligned = problem;
-      std::vector<TermId> formulas;
-      for (const solve::Assertion& a : problem.query.assertions) formulas.push_back(a.formula);
-      const solve::Assertion along{AlongAxes(problems.vocabulary(), formulas), ""};
+      const solve::Assertion along{
+          AlongAxes(problems.vocabulary(), solve::Formulas(problem.query.assertions)), ""};
       aligned.query.assertions.push_back(along);
       aligned.assertions.push_back(along);
       found = Confirm(aligned, wanted, small, complete, solver, budget, stop);
-      distances = found && found->confirmed && (complete || !AllPointsHaveDistances(problems, problem));
+      distances =
+          found && found->confirmed &&
+          (complete || !HasDistanceOfAnyPoints(problems.vocabulary(), solve::Formulas(problem.assertions)));
     }
     if (!found || !distances) found = Confirm(problem, wanted, small, complete, solver, budget, stop);
     if (!found) return std::nullopt;

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "koord/check/mentions_robot.h"
 #include "koord/semantics/compiler.h"
 
 namespace rondo::koord::semantics {
@@ -42,7 +43,7 @@ void Compiler::CallFunction(const lang::Expr& e, size_t f) {
   span_ = e.span;
   if (function.port >= 0) used_robot_ = true;
   if (!function.external()) {
-    used_robot_ = used_robot_ || MentionsRobot(function.def->body);
+    used_robot_ = used_robot_ || RobotMentions(model_).In(function.def->body);
     return CallPlain(f, words, result);
   }
   std::vector<size_t> summaries;
@@ -95,32 +96,6 @@ void Compiler::CallFunction(const lang::Expr& e, size_t f) {
   Patch(begin);
   CallPlain(f, words, result);
   Patch(out);
-}
-
-// Does a function mention the robot that runs it?
-bool Compiler::MentionsRobot(ExprId id) const {
-  const lang::Expr& e = exprs_[id];
-  const Ref ref = model_.RefOf(id);
-  if (e.kind == lang::ExprKind::kPid) return true;
-  if (ref.kind == RefKind::kVariable && e.kind != lang::ExprKind::kCall) {
-    const VariableKind kind = model_.variables[ref.index].kind;
-    if (kind == VariableKind::kLocal || kind == VariableKind::kSensor || kind == VariableKind::kActuator)
-      return true;
-  }
-  if (ref.kind == RefKind::kFunction && e.kind == lang::ExprKind::kCall) {
-    const Function& f = model_.functions[ref.index];
-    if (f.port >= 0 || (!f.external() && MentionsRobot(f.def->body))) return true;
-  }
-  return std::any_of(e.args.begin(), e.args.end(), [&](ExprId a) { return MentionsRobot(a); });
-}
-
-bool Compiler::MentionsRobot(const std::vector<Stmt>& body) const {
-  const auto mentions = [&](ExprId e) { return e.valid() && MentionsRobot(e); };
-  return std::any_of(body.begin(), body.end(), [&](const Stmt& s) {
-    return mentions(s.value) || mentions(s.target) ||
-           std::any_of(s.operands.begin(), s.operands.end(), mentions) || MentionsRobot(s.body) ||
-           MentionsRobot(s.orelse);
-  });
 }
 
 void Compiler::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) {

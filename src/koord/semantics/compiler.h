@@ -113,8 +113,6 @@ class Compiler {
   void CallFunction(const lang::Expr& e, size_t function);
   void CallPlain(size_t function, uint32_t argument_words, uint32_t result_words);
   void CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type);
-  bool MentionsRobot(ExprId e) const;
-  bool MentionsRobot(const std::vector<Stmt>& body) const;
 
   // compile_statements.cc
   void Body(const std::vector<Stmt>& body);

@@ -21,15 +21,15 @@ using Lengths = std::map<std::string, uint32_t>;
 class Layout {
  public:
   struct Place {
-    uint32_t at = 0;     ///< in shared memory, in the block, or among the parameters
-    uint32_t width = 0;  ///< words of one item
-    uint32_t length =
-        0;  ///< items of an array, those of arrays in it counted one by one; 0 for anything else
+    uint32_t at = 0;                   ///< in shared memory, in the block, or among the parameters
+    uint32_t width = 0;                ///< words of one item
+    uint32_t length = 0;               ///< innermost items of an array; 0 for anything else
     std::vector<uint32_t> dimensions;  ///< of an array: the length of each level, the outer one first
     TypeId item;                       ///< the type of an item, or of the variable
-    uint32_t words() const { return exists ? width * std::max<uint32_t>(1, length) : 0; }
     bool own = false;
     bool exists = true;  ///< false for ports that are called and for streams
+
+    uint32_t words() const { return exists ? width * std::max<uint32_t>(1, length) : 0; }
   };
 
   /// Arrays of variables lie flat, item by item, arrays of arrays too; arrays inside records and lists are

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "koord/semantics/nested_lists.h"
+
 namespace rondo::koord::semantics {
 
 namespace {
@@ -39,38 +41,6 @@ Word Float(double x) { return FromFloat(x + 0.0); }
 
 }  // namespace
 
-std::string_view Describe(Fault fault) {
-  switch (fault) {
-    case Fault::kNone:
-      return "nothing";
-    case Fault::kIndex:
-      return "the index is out of range";
-    case Fault::kDivision:
-      return "the divisor is zero";
-    case Fault::kRemove:
-      return "the item is not in the list";
-    case Fault::kReturn:
-      return "the function ends without a value";
-    case Fault::kOverflow:
-      return "the number is too large";
-    case Fault::kExternal:
-      return "the function has no value here";
-    case Fault::kGrid:
-      return "the step of a grid must be positive";
-    case Fault::kNoValue:
-      return "there is no value in this list";
-    case Fault::kTooLong:
-      return "the list has more than a million items";
-    case Fault::kTooMany:
-      return "there are more than 100,000 ways to choose";
-    case Fault::kNoLock:
-      return "another robot holds the lock";
-    case Fault::kRunaway:
-      return "this runs for more than a hundred million steps";
-  }
-  return "";
-}
-
 Machine::Machine(const Code& code, const Layout& layout, Heap& heap)
     : code_(code), layout_(layout), heap_(heap) {
   size_t depth = 64;
@@ -93,32 +63,6 @@ void Machine::Undo() {
   for (auto it = writes_.rbegin(); it != writes_.rend(); ++it) memory_[it->at] = it->before;
   writes_.clear();
   units_.clear();
-}
-
-// The list that the words from `words` on are; moves `words` behind them.
-Word Machine::Pack(const Shape& shape, size_t level, const Word*& words) {
-  const size_t items = shape.dimensions[level];
-  if (level + 1 == shape.dimensions.size()) {
-    const Word* from = words;
-    words += items * shape.width;
-    return heap_.Intern({from, items * shape.width});
-  }
-  std::vector<Word> lists;
-  for (size_t k = 0; k < items; ++k) lists.push_back(Pack(shape, level + 1, words));
-  return heap_.Intern(lists);
-}
-
-// The reverse; false if the list has another shape.
-bool Machine::Unpack(const Shape& shape, size_t level, Word list, Word*& words) {
-  const auto items = heap_[list];
-  const bool last = level + 1 == shape.dimensions.size();
-  if (items.size() != static_cast<size_t>(shape.dimensions[level]) * (last ? shape.width : 1)) return false;
-  if (last) {
-    words = std::copy(items.begin(), items.end(), words);
-    return true;
-  }
-  return std::all_of(items.begin(), items.end(),
-                     [&](Word item) { return Unpack(shape, level + 1, item, words); });
 }
 
 // One function: the state of the machine stays in registers, and a switch is what compilers make fast.
@@ -252,22 +196,19 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
         s[-1] = FromInt(inside ? flat : -1);
         break;
       }
-      case Op::kPack: {
+      case Op::kPack:
         s -= i->b;
-        const Word* from = s;
-        const Word list = Pack(code_.shapes[i->a], 0, from);
-        *s++ = list;
+        *s = Pack(heap_, code_.shapes[i->a], {s, i->b});
+        ++s;
         break;
-      }
-      case Op::kUnpack: {
-        Word* to = --s;
-        if (!Unpack(code_.shapes[i->a], 0, *s, to)) {
+      case Op::kUnpack:
+        --s;
+        if (!Unpack(heap_, code_.shapes[i->a], *s, s)) {
           RONDO_TOTAL(kIndex);
           std::fill_n(s, i->b, 0);
         }
         s += i->b;
         break;
-      }
       case Op::kFrame:
         for (uint32_t k = 0; k < i->b; ++k) *s++ = frame[i->a + k];
         break;

@@ -82,8 +82,6 @@ class Machine {
 
  private:
   bool Stop(Fault fault, size_t at);
-  Word Pack(const Shape& shape, size_t level, const Word*& words);
-  bool Unpack(const Shape& shape, size_t level, Word list, Word*& words);
 
   const Code& code_;
   const Layout& layout_;

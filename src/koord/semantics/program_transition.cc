@@ -18,7 +18,7 @@ ProgramTransition::ProgramTransition(Team& team)
       lock_holder_(team.events().size() + 1, -1),
       acted_(team.robots()) {
   for (const EventCode& event : team.events()) any_urgent_ = any_urgent_ || event.urgent;
-  team.machine().SetChooser([this](uint64_t possibilities) { return Choose(possibilities); });
+  team.machine().SetChooser([this](uint64_t possibilities) { return Pick(possibilities); });
 }
 
 Effect& ProgramTransition::Next(size_t robot) {
@@ -32,7 +32,7 @@ Effect& ProgramTransition::Next(size_t robot) {
 }
 
 // `any` takes the first value at first, and later each of the others.
-uint64_t ProgramTransition::Choose(uint64_t possibilities) {
+uint64_t ProgramTransition::Pick(uint64_t possibilities) {
   if (met_ == picks_.size()) picks_.push_back({0, possibilities});
   return picks_[met_++].pick;
 }
@@ -52,7 +52,7 @@ void ProgramTransition::Each(const std::function<Fault*()>& run) {
   do {
     Fault* fault = run();
     // More than anybody could look at: a fault, not fewer possibilities.
-    if (++ways == kMostWays && *fault == Fault::kNone && picks_.size() > 0) *fault = Fault::kTooMany;
+    if (++ways == kMostWays && *fault == Fault::kNone && !picks_.empty()) *fault = Fault::kTooMany;
   } while (ways < kMostWays && NextChoices());
 }
 

@@ -76,7 +76,7 @@ class ProgramTransition {
   void Run(size_t robot, uint32_t event, uint32_t entry, Effect& effect);
   void RunInits(size_t robot, Effect& effect);
   void Each(const std::function<Fault*()>& run);
-  uint64_t Choose(uint64_t possibilities);
+  uint64_t Pick(uint64_t possibilities);
   bool NextChoices();
   Effect& Next(size_t robot);
   bool Choose(size_t robot, const Visit& visit);

@@ -29,8 +29,8 @@ struct Command {
   };
   Kind kind;
   diag::Span span;
-  std::vector<expr::TermId>
-      terms;          ///< kDeclare, kAssert: one; kGetValue: any number; kCheckSat: what is assumed
+  /// kDeclare, kAssert: one; kGetValue: any number; kCheckSat: what is assumed
+  std::vector<expr::TermId> terms;
   size_t levels = 1;  ///< kPush, kPop
   std::string text;   ///< kEcho
 };
@@ -49,9 +49,8 @@ struct Script {
 using Extension = std::function<bool(const SExpr& command, TermReader& terms)>;
 
 /// Reads a script. Everything that is wrong is reported; then the script must not be run. Declarations and
-/// definitions stay in sight after `pop` and `(reset-assertions)`, but their names can be declared again;
-/// after
-/// `(reset)` they are gone.
+/// definitions stay in sight after `pop` and `(reset-assertions)`, but their names can be declared again.
+/// After `(reset)` they are gone.
 void ReadScript(const diag::SourceSet& sources, diag::FileId file, Script& script,
                 diag::Diagnostics& diagnostics, const Extension& extension = {});
 

@@ -9,19 +9,19 @@ namespace rondo::solve::certify {
 
 /// One step of a proof.
 ///
-///     (let NAME TERM)                  a name for a term
-///     (substitute VARIABLE TERM)       the variable is known to equal the term, and is replaced by it
-///     (squares FORMULA)                a known sum of squares that is at most 0: each square is 0
-///     (fact FORMULA)                   known, up to arithmetic; for the searches that follow
-///     (period VARIABLE C C)            what is known changes by no full turn of the variable: one window of
-///     at
-///                                      least a period, from one number to the other, is enough
-///     (identity (C TERM) ... C)        numbers C: the sum of the products and the last number is 0, whatever
-///                                      the variables are; a fact
-///     (cases FORMULA)                  one of the alternatives of a known disjunction holds
-///     (case FORMULA) ... (end)         an alternative and the steps that refute it; `end` behind the last
-///     one (contradiction)                  what is known contradicts itself: this case is closed (search
-///     (VARIABLES) "TREE")      no box holds a solution of the facts: this case is closed
+///     (let NAME TERM)             a name for a term
+///     (substitute VARIABLE TERM)  the variable is known to equal the term, and is replaced by it
+///     (squares FORMULA)           a known sum of squares that is at most 0: each square is 0
+///     (fact FORMULA)              known, up to arithmetic; for the searches that follow
+///     (period VARIABLE C C)       no full turn of the variable changes what is known: it may lie
+///                                 between the two numbers, which are a period apart or more
+///     (identity (C TERM) ... C)   numbers C: the sum of the products and the last number is 0,
+///                                 whatever the variables are; a fact
+///     (cases FORMULA)             one of the alternatives of a known disjunction holds
+///     (case FORMULA) ... (end)    an alternative and the steps that refute it; `end` comes behind
+///                                 the last one
+///     (contradiction)             what is known contradicts itself: this case is closed
+///     (search (VARIABLES) "TREE") no box holds a solution of the facts: this case is closed
 ///
 /// TREE: a box and its parts, from the outside in: `.` for a box that contraction empties, `V C` and two
 /// trees for one that is split at `C`, where `V` counts the variables from 0.

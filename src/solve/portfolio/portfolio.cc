@@ -131,10 +131,14 @@ Report PortfolioSolver::Decide(const Query& query, const Budget& budget, const b
   }
   report.answer = *answers.front();
   if (std::holds_alternative<Unknown>(report.answer)) {
-    std::string reason;
+    Unknown unknown;
     for (const Outcome& o : report.outcomes)
-      reason += fmt::format("{}{}: {}", reason.empty() ? "" : "; ", o.engine, o.answer);
-    report.answer = Unknown{reason};
+      unknown.reason += fmt::format("{}{}: {}", unknown.reason.empty() ? "" : "; ", o.engine, o.answer);
+    for (const auto& answer : answers) {
+      const auto* one = std::get_if<Unknown>(&*answer);
+      unknown.timed_out = unknown.timed_out || (one != nullptr && one->timed_out);
+    }
+    report.answer = std::move(unknown);
   }
   return report;
 }

@@ -25,8 +25,8 @@ Answer SmtLibSolver::Check(const Query& query, const Budget& budget, const base:
   const auto output = RunProcess(command_, ToSmtLib(query), budget.time, stop);
   if (!output.ok()) return Unknown{output.error().message};
   if (output.value().timed_out) {
-    return Unknown{stop.cancelled() ? "interrupted"
-                                    : fmt::format("time-out after {} ms", budget.time.count())};
+    if (stop.cancelled()) return Unknown{"interrupted"};
+    return Unknown{fmt::format("time-out after {} ms", budget.time.count()), true};
   }
   std::istringstream lines(output.value().text);
   for (std::string line; std::getline(lines, line);) {

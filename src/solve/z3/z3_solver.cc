@@ -119,7 +119,7 @@ Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop
   const std::optional<::z3::check_result> result = job->Check(limited);
   if (!result) {
     if (stop.cancelled()) return Unknown{"interrupted"};
-    return Unknown{fmt::format("time-out after {} ms", budget.time.count())};
+    return Unknown{fmt::format("time-out after {} ms", budget.time.count()), true};
   }
   switch (*result) {
     case ::z3::unsat: {
@@ -154,7 +154,7 @@ Answer Run(const Query& query, const Budget& budget, const base::StopToken& stop
   if (stop.cancelled()) return Unknown{"interrupted"};
   const std::string reason = solver.reason_unknown();
   if (reason == "timeout" || reason == "canceled" || limited.expired())
-    return Unknown{fmt::format("time-out after {} ms", budget.time.count())};
+    return Unknown{fmt::format("time-out after {} ms", budget.time.count()), true};
   return Unknown{"Z3: " + reason};
 }
 
@@ -172,7 +172,7 @@ std::string Z3Solver::name() const {
 }
 
 Answer Z3Solver::Check(const Query& query, const Budget& budget, const base::StopToken& stop) const {
-  if (stop.StopRequested()) return Unknown{stop.cancelled() ? "interrupted" : "time-out"};
+  if (stop.StopRequested()) return Unknown{stop.cancelled() ? "interrupted" : "time-out", !stop.cancelled()};
   try {
     return Run(query, budget, stop);
   } catch (const ::z3::exception& failure) {
