@@ -197,6 +197,14 @@ TypeId Checker::Target(ExprId id) {
   may_choose_ = may_choose;
   writing_ = false;
   if (diagnostics_.errors() != before) return {};
+  for (ExprId part = id; part != root; part = exprs_[part].args[0]) {
+    if (model_.RefOf(part).kind != RefKind::kOpaqueField) continue;
+    const std::string name = model_.types.Name(model_.TypeOf(exprs_[part].args[0]));
+    diagnostics_.Report(Kind::kKoordNotAssignable, exprs_[part].span, "this cannot be assigned to")
+        .Under(fmt::format("nothing says what a `{}` consists of", name))
+        .Help(fmt::format("declare it: `def adt {}:` and its members below", name));
+    return {};
+  }
   const Ref ref = model_.RefOf(root);
   // `x[pid]` is resolved at the index, `x` alone at the name.
   ExprId cell = id;
