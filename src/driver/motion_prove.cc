@@ -61,13 +61,13 @@ class Run {
     MotionReport report;
     report.graph = &graph;
     report.regions = FindRegions(graph, arena, options_.timeout, stop_);
-    report.obligations = choreo::ObligationsOf(graph, arena, conditions);
+    report.discharged = discharged_[&graph];
+    report.obligations = choreo::ObligationsOf(graph, arena, conditions, report.discharged);
     // Said below, with the reason.
     if (!report.regions.failed.empty())
       std::erase_if(report.obligations.missing, [](const choreo::Missing& m) { return m.region; });
     const solve::cache::ProofCache cache(options_.cache ? solve::cache::ProofCache::DefaultFolder()
                                                         : std::filesystem::path());
-    report.discharged = discharged_[&graph];
     choreo::ProveOptions prove;
     prove.limits.time = std::chrono::milliseconds(static_cast<int64_t>(options_.timeout * 1000));
     prove.limits.certificates = options_.certify;

@@ -48,6 +48,8 @@ std::string_view Words(ObligationKind kind) {
       return "messages as promised";
     case ObligationKind::kContract:
       return "contracts can be kept";
+    case ObligationKind::kKeeping:
+      return "motions can be kept";
     case ObligationKind::kInterrupted:
       return "motions may be interrupted";
     case ObligationKind::kProcess:
@@ -79,6 +81,8 @@ std::string_view Name(choreo::Way way) {
       return "separation";
     case choreo::Way::kPoints:
       return "points";
+    case choreo::Way::kCurve:
+      return "curve";
   }
   return "";
 }

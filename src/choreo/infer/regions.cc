@@ -6,6 +6,7 @@
 #include <map>
 
 #include "choreo/infer/cells.h"
+#include "choreo/prove/answer.h"
 #include "choreo/prove/sampler.h"
 #include "expr/defined.h"
 #include "robot/separation/numeric_set.h"

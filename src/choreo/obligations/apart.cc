@@ -24,10 +24,10 @@ struct Slab {
   bool Meets(const Slab& other) const { return low <= other.high && other.low <= high; }
 };
 
-class Keeping {
+class Apartness {
  public:
-  Keeping(Statements& s, ObligationKind kind, diag::Span span, const std::vector<Member>& members,
-          const std::vector<TermId>& known)
+  Apartness(Statements& s, ObligationKind kind, diag::Span span, const std::vector<Member>& members,
+            const std::vector<TermId>& known)
       : s_(s), arena_(s.arena()), kind_(kind), span_(span), members_(members), known_(known) {}
 
   void Run() {
@@ -142,7 +142,7 @@ class Keeping {
 
 void StateApart(Statements& statements, ObligationKind kind, diag::Span span,
                 const std::vector<Member>& members, const std::vector<TermId>& known) {
-  Keeping(statements, kind, span, members, known).Run();
+  Apartness(statements, kind, span, members, known).Run();
 }
 
 }  // namespace rondo::choreo

@@ -7,7 +7,6 @@
 
 namespace rondo::choreo {
 
-using expr::Rational;
 using expr::TermId;
 
 namespace {
@@ -41,9 +40,6 @@ void StateContract(Statements& s, const Instance& i) {
   // What the motion leaves as it is stays as it was required to be.
   const TermId during = arena.And({c.during, c.assume, Unchanged(s, i)});
   s.Sat(span, State("during " + who), {during, s.Elapsed(i.duration)});
-  for (const Rational& t : s.Instants(i.duration.least, c.during)) {
-    s.Sat(span, State(fmt::format("{:.3g} s after {} has begun", t.ToDouble(), who)), {s.AtClock(during, t)});
-  }
   if (i.duration.interruptible && c.post != arena.True()) {
     s.Unsat(ObligationKind::kInterrupted, span,
             {"what " + who + " promises whenever it may be interrupted",

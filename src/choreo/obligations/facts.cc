@@ -16,23 +16,6 @@ namespace {
 
 constexpr size_t kMostWays = 12;
 
-// What may change while a step goes on: what its motions modify, and all that no robot determines.
-std::set<TermId> Changing(const Graph& graph, const Node& motion) {
-  std::set<TermId> changing;
-  for (const robot::Body& body : graph.world->bodies) {
-    for (const auto& v : body.inputs) changing.insert(v.term);
-  }
-  for (const auto& v : graph.world->environment) changing.insert(v.term);
-  for (const Part& p : motion.parts) {
-    const Instance& instance = graph.instances[p.instance];
-    const auto& states = graph.BodyOf(p.robot).states;
-    for (size_t i = 0; i < states.size(); ++i) {
-      if (instance.contract.modifies[i]) changing.insert(states[i].term);
-    }
-  }
-  return changing;
-}
-
 // The facts that do not depend on any of these variables.
 Facts Without(const Arena& arena, const Facts& facts, const std::set<TermId>& variables) {
   Facts result;
@@ -141,7 +124,7 @@ class Flow {
       news.merge(Conjuncts(arena_, c.post));
       news.merge(AtTheEnd(c, end));
     }
-    std::set<TermId> old = Changing(graph_, motion);
+    std::set<TermId> old = ChangingIn(graph_, motion);
     old.insert(end);  // of an earlier time
     Facts result;
     for (Conjunction way : Without(arena_, facts, old)) {
@@ -222,6 +205,22 @@ class Flow {
 
 }  // namespace
 
+std::set<TermId> ChangingIn(const Graph& graph, const Node& motion) {
+  std::set<TermId> changing;
+  for (const robot::Body& body : graph.world->bodies) {
+    for (const auto& v : body.inputs) changing.insert(v.term);
+  }
+  for (const auto& v : graph.world->environment) changing.insert(v.term);
+  for (const Part& p : motion.parts) {
+    const Instance& instance = graph.instances[p.instance];
+    const auto& states = graph.BodyOf(p.robot).states;
+    for (size_t i = 0; i < states.size(); ++i) {
+      if (instance.contract.modifies[i]) changing.insert(states[i].term);
+    }
+  }
+  return changing;
+}
+
 Duration StepOf(const Node& motion) {
   Duration step{expr::Rational(0), std::nullopt, true};
   for (const Part& p : motion.parts) {
@@ -246,7 +245,7 @@ TermId ToTerm(Arena& arena, const Facts& facts) {
 }
 
 TermId Kept(const Graph& graph, const Node& motion, const Facts& facts, Arena& arena) {
-  return ToTerm(arena, Without(arena, facts, Changing(graph, motion)));
+  return ToTerm(arena, Without(arena, facts, ChangingIn(graph, motion)));
 }
 
 TermId OwnFacts(const Graph& graph, RobotId robot, const Facts& facts, Arena& arena) {

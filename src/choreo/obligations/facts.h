@@ -28,6 +28,9 @@ expr::TermId ToTerm(expr::Arena& arena, const Facts& facts);
 /// How long a step takes: at least as long as any of its motions has to, at most as long as each of them can.
 Duration StepOf(const Node& motion);
 
+/// What may change while a step goes on: what its motions modify, inputs, and the environment.
+std::set<expr::TermId> ChangingIn(const Graph& graph, const Node& motion);
+
 /// Those conjuncts that stay true while a step goes on: they depend neither on what its motions modify nor on
 /// inputs and the environment.
 expr::TermId Kept(const Graph& graph, const Node& motion, const Facts& facts, expr::Arena& arena);

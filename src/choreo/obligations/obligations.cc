@@ -25,33 +25,10 @@ struct Context {
   std::optional<TermId> region;
 };
 
-// The formula with all comparisons relaxed by a millionth: what differs by rounding only is near enough.
-TermId Nearly(Arena& arena, TermId formula) {
-  const TermId slack = arena.Number(arena.Real(), Rational(1) / Rational(1'000'000));
-  const std::vector<TermId> args(arena.args(formula).begin(), arena.args(formula).end());
-  switch (arena.op(formula)) {
-    case expr::Op::kAnd:
-    case expr::Op::kOr: {
-      std::vector<TermId> parts;
-      for (const TermId a : args) parts.push_back(Nearly(arena, a));
-      return arena.op(formula) == expr::Op::kAnd ? arena.And(parts) : arena.Or(parts);
-    }
-    case expr::Op::kEq:
-      if (arena.sort_of(args[0]) == arena.Bool()) return formula;
-      return arena.And(arena.Le(args[0], arena.Add(args[1], slack)),
-                       arena.Le(args[1], arena.Add(args[0], slack)));
-    case expr::Op::kLe:
-    case expr::Op::kLt:
-      return arena.Le(args[0], arena.Add(args[1], slack));
-    default:
-      return formula;
-  }
-}
-
 class Builder {
  public:
-  Builder(const Graph& graph, Arena& arena)
-      : graph_(graph), arena_(arena), s_(graph, arena), facts_(FactsOf(graph, arena)) {}
+  Builder(const Graph& graph, Arena& arena, const std::set<std::string>& proved)
+      : graph_(graph), arena_(arena), s_(graph, arena), facts_(FactsOf(graph, arena)), proved_(proved) {}
 
   Obligations Run(const std::vector<SideCondition>& conditions) {
     for (const robot::Body& body : graph_.world->bodies) {
@@ -187,22 +164,30 @@ class Builder {
     // What nothing changes stays as it was.
     const TermId kept = Kept(graph_, n, facts_[id.index()], arena_);
     during.push_back(kept);
-    std::vector<TermId> promised;
-    for (const Part& p : n.parts) promised.push_back(graph_.instances[p.instance].contract.during);
-    const TermId together = arena_.And(during);
-    for (const Rational& t : s_.Instants(StepOf(n).least, arena_.And(promised))) {
-      s_.Sat(n.span, State(fmt::format("{:.3g} s after {} has begun", t.ToDouble(), TextOf(n))),
-             {s_.AtClock(together, t)});
-    }
     for (const Part& p : n.parts) {
       s_.instances = {p.instance};
-      Alone(id, p, during, context);
+      Begins(id, p, context);
       Assumption(n, p, kept, context);
     }
     s_.instances.clear();
     for (const Part& p : n.parts) s_.instances.push_back(p.instance);
     s_.Sat(n.span, {fmt::format("{} begins", TextOf(n)), fmt::format("{} never begins", TextOf(n))},
            Known(id, context), ObligationKind::kReached);
+    StateKeeping(s_, n, TextOf(n), facts_[id.index()], context.assumptions, proved_);
+    Occupy(n, during, context, "");
+    const auto bridge = BridgeInto(s_, n, Known(id, context));
+    if (!bridge.empty()) Occupy(n, bridge, context, " (before it is where `during` begins)");
+  }
+
+  // What the robots of a step do in space while these formulas hold; `when` that is, for messages.
+  void Occupy(const Node& n, const std::vector<TermId>& during, const Context& context,
+              const std::string& when) {
+    for (const Part& p : n.parts) {
+      s_.instances = {p.instance};
+      Space(p, during, context, when);
+    }
+    s_.instances.clear();
+    for (const Part& p : n.parts) s_.instances.push_back(p.instance);
     for (const auto& [guarantee, span] : context.guarantees) {
       auto formulas = during;
       formulas.push_back(s_.Fails(guarantee));
@@ -212,8 +197,10 @@ class Builder {
     for (const Part& p : n.parts) {
       const Instance& i = graph_.instances[p.instance];
       if (!i.contract.footprint) continue;  // said where it is missing
-      members.push_back(
-          {fmt::format("`{}: {}`", NameOf(p.robot), i.text), &*i.contract.footprint, {}, {p.instance}});
+      members.push_back({fmt::format("`{}: {}`{}", NameOf(p.robot), i.text, when),
+                         &*i.contract.footprint,
+                         {},
+                         {p.instance}});
     }
     StateApart(s_, ObligationKind::kCollision, n.parts[0].span, members, during);
   }
@@ -228,8 +215,8 @@ class Builder {
     return "`" + text + "`";
   }
 
-  // Pre, body, obstacles and region of one robot in a step.
-  void Alone(NodeId id, const Part& p, const std::vector<TermId>& during, const Context& context) {
+  // How one robot begins a step.
+  void Begins(NodeId id, const Part& p, const Context& context) {
     const Instance& instance = graph_.instances[p.instance];
     const robot::Contract& c = instance.contract;
     const std::string who = fmt::format("`{}: {}`", NameOf(p.robot), instance.text);
@@ -237,16 +224,21 @@ class Builder {
     formulas.push_back(s_.Fails(c.pre));
     if (c.pre != arena_.True())
       s_.Unsat(ObligationKind::kPrecondition, p.span, Noun("the precondition of " + who), formulas);
-    // Its `during`, as it begins: at least nearly so, or nobody could keep the contract from here on.
     const TermId begins = s_.AtClock(c.during, 0);
-    formulas.back() = arena_.And(c.pre, Nearly(arena_, begins));
-    if (begins != arena_.True()) s_.Sat(p.span, State("in which " + who + " begins here"), formulas);
     formulas.back() = s_.Fails(begins);
     if (begins != arena_.True())
       s_.Unsat(ObligationKind::kStart, p.span,
                {fmt::format("{} begins where its `during` does", who),
                 fmt::format("the controller of {} has to bridge its beginning", who)},
                formulas);
+  }
+
+  // Body, obstacles and region of one robot in a step.
+  void Space(const Part& p, const std::vector<TermId>& during, const Context& context,
+             const std::string& when) {
+    const Instance& instance = graph_.instances[p.instance];
+    const robot::Contract& c = instance.contract;
+    const std::string who = fmt::format("`{}: {}`{}", NameOf(p.robot), instance.text, when);
     const Shape* body = BodyOf(p.robot);
     if (body == nullptr || !c.footprint) return;
     const TermId state = arena_.And(during);
@@ -381,12 +373,14 @@ class Builder {
   Arena& arena_;
   Statements s_;
   std::vector<Facts> facts_;
+  const std::set<std::string>& proved_;
 };
 
 }  // namespace
 
-Obligations ObligationsOf(const Graph& graph, Arena& arena, const std::vector<SideCondition>& conditions) {
-  return Builder(graph, arena).Run(conditions);
+Obligations ObligationsOf(const Graph& graph, Arena& arena, const std::vector<SideCondition>& conditions,
+                          const std::set<std::string>& proved) {
+  return Builder(graph, arena, proved).Run(conditions);
 }
 
 bool IsRequired(ObligationKind kind) {
@@ -423,6 +417,8 @@ std::string_view KindName(ObligationKind kind) {
       return "message";
     case ObligationKind::kContract:
       return "contract";
+    case ObligationKind::kKeeping:
+      return "keeping";
     case ObligationKind::kInterrupted:
       return "interrupted";
     case ObligationKind::kStart:

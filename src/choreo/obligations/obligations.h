@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,7 @@ enum class ObligationKind : uint8_t {
   kTotalChoice,   ///< some guard holds
   kMessage,       ///< the guard of a message, and what it carries
   kContract,      ///< pre, during and post of a motion can hold
+  kKeeping,       ///< the motions of a step can be kept at every moment, by continuous states
   kInterrupted,   ///< what a motion promises holds whenever a message may end it
   kStart,         ///< `during` of a motion holds as it begins; if not, its controller has to bridge that
   kProcess,       ///< what the typing of a process leaves open
@@ -36,7 +39,23 @@ enum class ObligationKind : uint8_t {
 /// Does an obligation of this kind have to hold? The others tell what a proof rests on.
 bool IsRequired(ObligationKind kind);
 
-/// To show: `formula` has no solution together with `rest`; or, if `satisfiable`, that it has one.
+/// What has to be possible in a step: from each start there is one continuous curve of the states that it
+/// moves, on which `during` holds at every moment and `post` at the end. Curves may begin beside the start,
+/// if it is no farther than a bridge.
+struct Keeping {
+  std::vector<expr::TermId> moving;     ///< states that the motions of the step modify
+  std::vector<expr::TermId> before;     ///< for each of them: what it is when the step begins
+  std::vector<expr::Rational> bridges;  ///< for each of them: how far `during` may begin from there; SI units
+  std::vector<expr::TermId> starts;     ///< where the step may begin, over `before`: one of these holds
+  expr::TermId given;    ///< what others keep at every moment: over states, inputs and the environment
+  expr::TermId during;   ///< over `moving` and the clock, and over others; ranges are part of it
+  expr::TermId post;     ///< of motions that cannot be interrupted
+  expr::Rational least;  ///< seconds that the step takes, at least
+  std::optional<expr::Rational> most;  ///< at most; none: for ever, if nobody interrupts it
+};
+
+/// To show: `formula` has no solution together with `rest`; or, if `satisfiable`, that it has one; or, if
+/// there is a `keeping`, that (`formula` only names it).
 struct Obligation {
   ObligationKind kind = ObligationKind::kContract;
   diag::Span span;
@@ -47,6 +66,7 @@ struct Obligation {
   /// What else is known, about other variables than `formula`: it matters only if it is contradictory.
   expr::TermId rest;
   std::optional<robot::Meeting> meeting;  ///< what `formula` says, if it is about shapes
+  std::optional<Keeping> keeping;
   NodeId node;                    ///< the motion, message or choice that it is about, if it is about one
   std::vector<size_t> instances;  ///< the motions that it is about
 };
@@ -67,9 +87,11 @@ struct Obligations {
 /// contracts are kept, then no two bodies ever meet, no body meets an obstacle, every motion begins where it
 /// may, every choice has an alternative, and every message is as it says. Cost: squares of the number of
 /// robots in a step and of threads in a fork, linear in the graph otherwise.
-/// With those that the typing of processes leaves open.
+/// With those that the typing of processes leaves open. `proved`: motions (`Type.Motion`) whose controllers
+/// were proved to keep their contracts, so that these can be kept.
 Obligations ObligationsOf(const Graph& graph, expr::Arena& arena,
-                          const std::vector<SideCondition>& conditions = {});
+                          const std::vector<SideCondition>& conditions = {},
+                          const std::set<std::string>& proved = {});
 
 std::string_view KindName(ObligationKind kind);
 

@@ -40,6 +40,7 @@ void Statements::Unsat(ObligationKind kind, diag::Span span, const Claim& claim,
        arena_.And(others),
        {},
        {},
+       {},
        {}});
 }
 
@@ -57,13 +58,26 @@ void Statements::Apart(ObligationKind kind, diag::Span span, const Claim& claim,
        arena_.And(others),
        std::move(meeting),
        {},
+       {},
        {}});
 }
 
 void Statements::Sat(diag::Span span, const Claim& claim, std::vector<TermId> formulas, ObligationKind kind) {
   std::vector<TermId> others;
   formulas.push_back(Related(formulas, others));
-  Add({kind, span, claim.title, claim.failure, true, arena_.And(formulas), arena_.True(), {}, {}, {}});
+  Add({kind, span, claim.title, claim.failure, true, arena_.And(formulas), arena_.True(), {}, {}, {}, {}});
+}
+
+void Statements::Keep(diag::Span span, const Claim& claim, TermId formula, Keeping keeping) {
+  Obligation o;
+  o.kind = ObligationKind::kKeeping;
+  o.span = span;
+  o.title = claim.title;
+  o.failure = claim.failure;
+  o.formula = formula;
+  o.rest = arena_.True();
+  o.keeping = std::move(keeping);
+  Add(std::move(o));
 }
 
 void Statements::Lacks(diag::Span span, std::string what, bool region) {
@@ -76,7 +90,7 @@ void Statements::Lacks(diag::Span span, std::string what, bool region) {
 void Statements::Add(Obligation obligation) {
   obligation.node = node;
   obligation.instances = instances;
-  if (obligation.formula == arena_.Constant(obligation.satisfiable)) return;
+  if (!obligation.keeping && obligation.formula == arena_.Constant(obligation.satisfiable)) return;
   if (!known_.emplace(obligation.formula, obligation.rest).second) return;
   result_.all.push_back(std::move(obligation));
 }
@@ -138,15 +152,6 @@ TermId Statements::Elapsed(const Duration& d) const {
 
 TermId Statements::Ended(const Duration& d) const {
   return arena_.And(Elapsed(d), arena_.Le(Number(d.least), graph_.world->clock));
-}
-
-std::vector<Rational> Statements::Instants(const Rational& least, TermId during) const {
-  std::vector<Rational> instants;
-  if (!robot::VariablesOf(arena_, {during}).contains(graph_.world->clock)) return instants;
-  constexpr int kInstants = 4;
-  for (int k = 0; k <= kInstants && !(least.IsZero() && k > 0); ++k)
-    instants.push_back(least * Rational(k) / Rational(kInstants));
-  return instants;
 }
 
 }  // namespace rondo::choreo

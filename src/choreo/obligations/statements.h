@@ -4,6 +4,7 @@
 #include <set>
 #include <unordered_map>
 
+#include "choreo/obligations/facts.h"
 #include "choreo/obligations/obligations.h"
 
 namespace rondo::choreo {
@@ -38,6 +39,8 @@ class Statements {
   /// The formulas have a common solution.
   void Sat(diag::Span span, const Claim& claim, std::vector<expr::TermId> formulas,
            ObligationKind kind = ObligationKind::kContract);
+  /// The step can be kept; `formula` names what is asked.
+  void Keep(diag::Span span, const Claim& claim, expr::TermId formula, Keeping keeping);
   void Lacks(diag::Span span, std::string what, bool region = false);
   Obligations Take() { return std::move(result_); }
 
@@ -56,9 +59,6 @@ class Statements {
   /// 0 <= clock <= most; and least <= clock
   expr::TermId Elapsed(const Duration& d) const;
   expr::TermId Ended(const Duration& d) const;
-  /// Some moments up to `least`, if the formula depends on the clock: at each of them there has to be a
-  /// state.
-  std::vector<expr::Rational> Instants(const expr::Rational& least, expr::TermId during) const;
   const std::set<expr::TermId>& VariablesOf(expr::TermId formula);
 
  private:
@@ -72,8 +72,19 @@ class Statements {
   Obligations result_;
 };
 
-/// What is stated of one motion alone: that its contract can be kept.
+/// What is stated of one motion alone: that it can begin, go on and end.
 void StateContract(Statements& statements, const Instance& instance);
+
+/// That the motions of a step can be kept at every moment, from wherever `facts` and their preconditions let
+/// them begin; `what` names them. Those whose controllers are `proved` keep their contracts anyway.
+void StateKeeping(Statements& statements, const Node& step, const std::string& what, const Facts& facts,
+                  const std::vector<expr::TermId>& assumptions, const std::set<std::string>& proved);
+
+/// A motion may begin a little beside where its `during` says that it is. The states on the straight line
+/// from where the step begins (`known`, and preconditions) to there, as formulas; empty if every motion
+/// begins where it says.
+std::vector<expr::TermId> BridgeInto(Statements& statements, const Node& step,
+                                     std::vector<expr::TermId> known);
 
 /// That something can be sent as a message promises, whenever `known` holds: receivers rely on it.
 void StatePromise(Statements& statements, const Node& message, std::vector<expr::TermId> known);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "choreo/prove/answer.h"
+#include "choreo/prove/keep.h"
 #include "expr/defined.h"
 #include "expr/import.h"
 #include "robot/separation/cuts.h"
@@ -67,6 +69,10 @@ class Deciding {
   }
 
   Decision Run() {
+    if (obligation_.keeping) {
+      Keeps(*obligation_.keeping);
+      return std::move(decision_);
+    }
     if (obligation_.satisfiable) {
       HasSolution();
     } else if (!meeting_) {
@@ -150,6 +156,28 @@ class Deciding {
     if (IsUnsat(answer)) return Proved(Way::kPoints);
     decision_.verdict = Verdict::kUnknown;
     decision_.reason = "it fails, unless what is known of the other robots is contradictory";
+  }
+
+  void Keeps(Keeping keeping) {
+    const auto copy_all = [&](std::vector<TermId>& terms) {
+      for (TermId& t : terms) t = copy_(t);
+    };
+    copy_all(keeping.moving);
+    copy_all(keeping.before);
+    copy_all(keeping.starts);
+    for (TermId* t : {&keeping.given, &keeping.during, &keeping.post}) *t = copy_(*t);
+    KeepingVerdict kept = Keep(arena_, keeping, copy_(world_.clock),
+                               [&](TermId formula, bool certificate) { return Ask(formula, certificate); });
+    decision_.verdict = kept.verdict;
+    decision_.way = Way::kCurve;
+    decision_.reason = std::move(kept.why);
+    if (stop_.StopRequested() && kept.verdict == Verdict::kUnknown) decision_.reason = "out of time";
+    decision_.certificates = std::move(kept.certificates);
+    NameVariables();
+    for (const auto& [original, own] : names_) {
+      const auto it = kept.values.find(own);
+      if (it != kept.values.end()) decision_.witness.values.emplace(original, it->second);
+    }
   }
 
   void HasSolution() {
@@ -308,22 +336,6 @@ class Deciding {
 };
 
 }  // namespace
-
-Numeric::Point PointOf(const solve::Answer& answer) {
-  Numeric::Point point;
-  if (const auto* sat = std::get_if<solve::Sat>(&answer)) {
-    for (const auto& [term, value] : sat->values) {
-      if (value.IsNumber()) point.emplace(term, value.AsNumber().ToDouble());
-    }
-  } else if (const auto* delta = std::get_if<solve::DeltaSat>(&answer)) {
-    for (const auto& [term, range] : delta->box) {
-      const auto [lo, hi] = range;
-      const bool low = std::isfinite(lo), high = std::isfinite(hi);
-      point.emplace(term, low && high ? lo / 2 + hi / 2 : low ? lo : high ? hi : 0);
-    }
-  }
-  return point;
-}
 
 Decision Decide(const Obligation& obligation, const robot::World& world, const Arena& arena,
                 const solve::icp::Options& engine, const Limits& limits, const base::StopToken& stop) {

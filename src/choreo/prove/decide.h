@@ -5,19 +5,19 @@
 #include <vector>
 
 #include "choreo/obligations/obligations.h"
+#include "choreo/prove/verdict.h"
 #include "expr/numeric.h"
 #include "solve/icp/icp_solver.h"
 
 /// Decides obligations.
 namespace rondo::choreo {
 
-enum class Verdict : uint8_t { kProved, kRefuted, kUnknown };
-
 /// Which way led to the verdict.
 enum class Way : uint8_t {
   kSizes,       ///< shapes in one frame: their sizes decide
   kSeparation,  ///< separating directions, over the state alone
   kPoints,      ///< intervals over the state and a point
+  kCurve,       ///< a curve of states over the clock
 };
 
 /// A state at which an obligation fails, or, for one that asks for a state, holds.
@@ -31,7 +31,7 @@ struct Decision {
   Way way = Way::kPoints;
   Witness witness;     ///< kRefuted, or how close it came: the state at which nothing could be excluded
   double apart = 0;    ///< kUnknown, of shapes: at least this far apart there; negative: they overlap
-  std::string reason;  ///< kUnknown
+  std::string reason;  ///< kUnknown; kRefuted: more about it, if there is more to say
   size_t questions = 0;
   /// kProved: a certificate for each question; none if nothing had to be asked.
   std::vector<std::string> certificates;
@@ -42,9 +42,6 @@ struct Limits {
   bool certificates = true;
   bool separation = true;  ///< off: only the general way over points, to compare
 };
-
-/// Values of the real variables in an answer: of `Sat`, or in the middle of the box of `DeltaSat`.
-expr::Numeric::Point PointOf(const solve::Answer& answer);
 
 /// Decides one obligation. Thread-safe: works on copies of the terms. `point`, `clock`: the world's.
 Decision Decide(const Obligation& obligation, const robot::World& world, const expr::Arena& arena,

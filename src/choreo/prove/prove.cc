@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // Part of every question in the cache: a new way of deciding asks again.
-constexpr std::string_view kEngine = "choreo 1";
+constexpr std::string_view kEngine = "choreo 2";
 
 class Proving {
  public:
@@ -56,7 +56,7 @@ class Proving {
     for (size_t i = 0; i < proofs_.all.size(); ++i) {
       const Obligation& o = obligations_.all[i];
       Decision& d = proofs_.all[i].decision;
-      if (o.satisfiable && o.kind != ObligationKind::kReached && never.contains(o.node) &&
+      if ((o.satisfiable || o.keeping) && o.kind != ObligationKind::kReached && never.contains(o.node) &&
           d.verdict == Verdict::kRefuted)
         d.verdict = Verdict::kProved;
     }
@@ -74,13 +74,16 @@ class Proving {
     Proof proof;
     const bool asks = options_.cache != nullptr || !options_.smt_out.empty();
     const std::string question = asks ? QuestionOf(obligation) : std::string();
-    if (!options_.smt_out.empty()) {
+    if (!options_.smt_out.empty() && !obligation.keeping) {
       Write(options_.smt_out / fmt::format("{:04}-{}.smt2", number + 1, KindName(obligation.kind)),
             fmt::format("; {}\n(set-info :status {})\n{}", obligation.title,
                         obligation.satisfiable ? "sat" : "unsat", question));
     }
     const bool certify = options_.limits.certificates;
-    const std::string key = fmt::format("; {}{}{}\n{}", kEngine, obligation.satisfiable ? ", sat" : "",
+    const std::string key = fmt::format("; {}{}{}\n{}", kEngine,
+                                        obligation.satisfiable ? ", sat"
+                                        : obligation.keeping   ? ", kept"
+                                                               : "",
                                         certify ? "" : ", not certified", question);
     if (options_.cache != nullptr && options_.certificates.empty() && options_.cache->Find(key)) {
       proof.decision.verdict = Verdict::kProved;

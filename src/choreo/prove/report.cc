@@ -38,6 +38,7 @@ Kind KindOf(ObligationKind kind) {
     case ObligationKind::kMessage:
       return Kind::kChoreoPromise;
     case ObligationKind::kContract:
+    case ObligationKind::kKeeping:
     case ObligationKind::kInterrupted:
     case ObligationKind::kStart:
       return Kind::kChoreoContract;
@@ -81,6 +82,8 @@ std::string_view HelpFor(ObligationKind kind) {
       return "send what the refinement promises, or promise less";
     case ObligationKind::kContract:
       return "a contract that nothing can keep would prove everything";
+    case ObligationKind::kKeeping:
+      return "let `during` say where the robot is at each moment, without gaps: `x == linear(clock, ...)`";
     case ObligationKind::kInterrupted:
       return "a message may come at any moment: say in `during` what `post` promises";
     case ObligationKind::kProcess:
@@ -154,7 +157,7 @@ void ConfirmWitnesses(const Obligations& obligations, expr::Arena& arena, Proofs
     const Obligation& o = obligations.all[i];
     Proof& proof = proofs.all[i];
     const Witness& witness = proof.decision.witness;
-    if (proof.decision.verdict != Verdict::kRefuted || witness.values.empty()) continue;
+    if (o.keeping || proof.decision.verdict != Verdict::kRefuted || witness.values.empty()) continue;
     const auto deny = [&](const std::string& why) {
       proofs.bug = true;
       proofs.problems.push_back(fmt::format("the witness of \"{}\" is not confirmed: {}", o.failure, why));
@@ -187,14 +190,20 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
     // A motion that begins where it must not often cannot begin there either: that is one mistake.
     const auto follows = [&](size_t j) {
       const Obligation& p = obligations.all[j];
-      return p.kind == ObligationKind::kPrecondition && p.node == o.node && p.instances == o.instances &&
-             proofs.all[j].decision.verdict == Verdict::kRefuted;
+      // Nor can a contract be kept that contradicts itself.
+      const bool own = o.keeping && p.kind == ObligationKind::kContract && !p.node.valid() &&
+                       !p.instances.empty() &&
+                       std::ranges::find(o.instances, p.instances[0]) != o.instances.end();
+      if (own) return proofs.all[j].decision.verdict == Verdict::kRefuted;
+      return p.kind == ObligationKind::kPrecondition && p.node == o.node &&
+             (o.keeping || p.instances == o.instances) && proofs.all[j].decision.verdict == Verdict::kRefuted;
     };
-    if (o.kind == ObligationKind::kContract && o.node.valid() &&
+    if ((o.kind == ObligationKind::kContract || o.keeping) && o.node.valid() &&
         std::ranges::any_of(std::views::iota(size_t{0}, obligations.all.size()), follows))
       continue;
     if (d.verdict == Verdict::kRefuted) {
       diag::Diagnostic& report = diagnostics.Report(KindOf(o.kind), o.span, o.failure);
+      if (!d.reason.empty()) report.Note(d.reason);
       Explain(graph, o, d.witness, report);
       if (proofs.all[i].confirmed) report.Note("FCL finds them in contact there, too");
       if (const auto help = HelpFor(o.kind); !help.empty()) report.Help(std::string(help));
@@ -212,7 +221,8 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
                               -d.apart));
     }
     Explain(graph, o, d.witness, report);
-    report.Help("give it more time with `--timeout`, or leave more space");
+    report.Help(o.keeping ? std::string(HelpFor(o.kind))
+                          : "give it more time with `--timeout`, or leave more space");
   }
 }
 

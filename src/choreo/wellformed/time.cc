@@ -23,11 +23,10 @@ class Time {
     for (const Node& n : graph_.nodes) {
       if (n.kind == NodeKind::kMotion) Step(n);
     }
-    // Time passes in a step if every motion of it may last.
+    // For certain time passes in a step if some motion of it has to last.
     const auto still = [](const Node& n) {
-      return n.kind != NodeKind::kMotion || std::ranges::any_of(n.parts, [](const Part& p) {
-               return p.duration.most && p.duration.most->IsZero();
-             });
+      return n.kind != NodeKind::kMotion ||
+             std::ranges::all_of(n.parts, [](const Part& p) { return p.duration.least.IsZero(); });
     };
     const auto silent = [](const Node& n) {
       return n.kind != NodeKind::kMotion && n.kind != NodeKind::kMessage;
@@ -41,9 +40,8 @@ class Time {
     }
     if (const NodeId zeno = Cycle(still); zeno.valid()) {
       diagnostics_.Report(Kind::kChoreoZeno, graph_[zeno].span, "this loop may go round without time passing")
-          .Note(
-              "there are messages in it, but no motion that lasts: infinitely many of them fit into no time "
-              "at all");
+          .Note("no motion on some way round it has to last: infinitely many rounds fit into no time at all")
+          .Help("give a motion on every way round it a least duration: `[0.1 s, inf)`");
     }
   }
 
@@ -89,8 +87,38 @@ class Time {
     return true;
   }
 
+  using Inside = std::function<bool(const Node&)>;
+
+  // All threads of a fork wait for each other: it is passed over such nodes only if each thread can be.
+  bool Passes(NodeId fork, const Inside& inside) const {
+    const Node& f = graph_[fork];
+    return std::ranges::all_of(f.next, [&](NodeId start) { return Leads(start, f.join, inside); });
+  }
+
+  bool Leads(NodeId start, NodeId join, const Inside& inside) const {
+    std::set<NodeId> seen;
+    std::vector<NodeId> todo{start};
+    while (!todo.empty()) {
+      const NodeId id = todo.back();
+      todo.pop_back();
+      if (id == join) return true;
+      if (!inside(graph_[id]) || !seen.insert(id).second) continue;
+      if (graph_[id].kind == NodeKind::kFork) {
+        if (Passes(id, inside)) todo.push_back(graph_[id].join);
+      } else {
+        todo.insert(todo.end(), graph_[id].next.begin(), graph_[id].next.end());
+      }
+    }
+    return false;
+  }
+
   // A node on a cycle of such nodes.
-  NodeId Cycle(const std::function<bool(const Node&)>& inside) const {
+  NodeId Cycle(const Inside& inside) const {
+    std::set<NodeId> closed;  // joins that are not reached without others
+    for (size_t i = 0; i < graph_.nodes.size(); ++i) {
+      if (graph_.nodes[i].kind == NodeKind::kFork && !Passes(NodeId(i), inside))
+        closed.insert(graph_.nodes[i].join);
+    }
     enum class Mark : uint8_t { kNew, kOpen, kDone };
     std::vector<Mark> marks(graph_.nodes.size(), Mark::kNew);
     std::vector<std::pair<NodeId, size_t>> path;
@@ -107,7 +135,7 @@ class Time {
           continue;
         }
         const NodeId to = next[path.back().second++];
-        if (!inside(graph_[to])) continue;
+        if (!inside(graph_[to]) || closed.contains(to)) continue;
         if (marks[to.index()] == Mark::kOpen) return to;
         if (marks[to.index()] == Mark::kDone) continue;
         marks[to.index()] = Mark::kOpen;
