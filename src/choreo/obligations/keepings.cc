@@ -126,7 +126,9 @@ void StateKeeping(Statements& s, const Node& n, const std::string& what, const F
   if (!asks) return;
   // Others may have moved on since the beginning.
   for (const TermId v : ChangingIn(s.graph(), n)) {
-    if (!earlier.contains(v)) before(v);
+    if (earlier.contains(v)) continue;
+    keeping.others.push_back(v);
+    keeping.others_before.push_back(before(v));
   }
   std::vector<TermId> roots = keeping.moving;
   roots.insert(roots.end(), {keeping.during, keeping.post});

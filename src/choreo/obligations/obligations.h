@@ -43,8 +43,10 @@ bool IsRequired(ObligationKind kind);
 /// moves, on which `during` holds at every moment and `post` at the end. Curves may begin beside the start,
 /// if it is no farther than a bridge.
 struct Keeping {
-  std::vector<expr::TermId> moving;     ///< states that the motions of the step modify
-  std::vector<expr::TermId> before;     ///< for each of them: what it is when the step begins
+  std::vector<expr::TermId> moving;  ///< states that the motions of the step modify
+  std::vector<expr::TermId> before;  ///< for each of them: what it is when the step begins
+  std::vector<expr::TermId> others;  ///< what else may change meanwhile, continuously: inputs, environment
+  std::vector<expr::TermId> others_before;  ///< for each of them: what it is when the step begins
   std::vector<expr::Rational> bridges;  ///< for each of them: how far `during` may begin from there; SI units
   std::vector<expr::TermId> starts;     ///< where the step may begin, over `before`: one of these holds
   expr::TermId given;    ///< what others keep at every moment: over states, inputs and the environment

@@ -164,6 +164,8 @@ class Deciding {
     };
     copy_all(keeping.moving);
     copy_all(keeping.before);
+    copy_all(keeping.others);
+    copy_all(keeping.others_before);
     copy_all(keeping.starts);
     for (TermId* t : {&keeping.given, &keeping.during, &keeping.post}) *t = copy_(*t);
     KeepingVerdict kept = Keep(arena_, keeping, copy_(world_.clock),

@@ -1,13 +1,9 @@
 #pragma once
 
-#include <functional>
 #include <string>
 
-#include "choreo/obligations/obligations.h"
-#include "choreo/prove/curve.h"
+#include "choreo/prove/keeping_start.h"
 #include "choreo/prove/verdict.h"
-#include "expr/numeric.h"
-#include "solve/solver.h"
 
 namespace rondo::choreo {
 
@@ -18,15 +14,11 @@ struct KeepingVerdict {
   std::vector<std::string> certificates;  ///< kProved: of all that had to be asked
 };
 
-/// Looks for a curve that keeps a step (`Keeping`), and proves that it does. Curves are tried in this order:
-/// what equations of `during` determine; straight from the start to a state that `post` allows, or staying
-/// there; and through states that `during` allows at some moments, straight in between. That a curve keeps
-/// `during` at *every* moment is asked of the solver, as formulas over the clock and the start, and where a
-/// formula is convex along the curve, at its ends. Where all states are determined, or no state is allowed at
-/// some moment, or a state would have to jump over a value, it is refuted. Everything else is unknown.
-///
-/// `ask(formula, certificate)` asks for a solution; all terms are in `arena`.
-KeepingVerdict Keep(expr::Arena& arena, const Keeping& keeping, expr::TermId clock,
-          const std::function<solve::Answer(expr::TermId, bool)>& ask);
+/// Looks for a curve that keeps a step (`Keeping`), and proves that it does (`Keeps`). Curves are tried in
+/// this order: what equations of `during` determine; straight from the start to a state that `post` allows,
+/// or staying there; and through states that `during` allows at some moments, straight in between. Refuted if
+/// the determined curve fails, if no state is allowed at some moment, if it begins too far from where it may,
+/// or if a state would have to jump over a value. Everything else is unknown. All terms are in `arena`.
+KeepingVerdict Keep(expr::Arena& arena, const Keeping& keeping, expr::TermId clock, const AskSolver& ask);
 
 }  // namespace rondo::choreo

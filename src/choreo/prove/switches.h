@@ -1,0 +1,35 @@
+#pragma once
+
+#include <set>
+#include <vector>
+
+#include "choreo/prove/curve.h"
+
+namespace rondo::choreo {
+
+/// The moments at which choices between terms change over, such as `select(clock < 2 s, a, b)`: where a
+/// comparison of the clock with a number decides. Other choices stay as they are.
+class Switches {
+ public:
+  Switches(expr::Arena& arena, expr::TermId formula, expr::TermId clock);
+
+  /// Does the term change over continuously between two neighbouring moments?
+  bool IsContinuousBetween(expr::TermId term, const std::vector<expr::TermId>& changing);
+  /// The formula or term between two neighbouring moments, with its choices made: on both closed ends, too,
+  /// if what it chooses is equal there.
+  expr::TermId Settled(expr::TermId term, const expr::Rational& from,
+                       const std::optional<expr::Rational>& to);
+  /// The same curve in pieces without such moments inside.
+  Curve Split(const Curve& curve);
+
+ private:
+  bool IsPlain(expr::TermId condition);
+  std::optional<expr::Rational> MomentOf(expr::TermId comparison);
+
+  expr::Arena& arena_;
+  expr::TermId clock_;
+  std::set<expr::TermId> plain_;  // conditions
+  std::vector<expr::Rational> moments_;
+};
+
+}  // namespace rondo::choreo
