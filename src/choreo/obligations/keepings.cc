@@ -34,6 +34,29 @@ TermId Range(expr::Arena& arena, const robot::Variable& v) {
   return arena.And(bounds);
 }
 
+// One formula that says all of what is asked, each part with a name of its own, so that different questions
+// differ.
+TermId NameOf(Statements& s, const Keeping& k) {
+  expr::Arena& arena = s.arena();
+  std::vector<TermId> parts;
+  const auto formula = [&](const std::string& name, TermId f) {
+    parts.push_back(arena.Or(arena.Variable(arena.Declare("part " + name, {}, arena.Bool())), f));
+  };
+  const auto number = [&](const std::string& name, const Rational& value) {
+    parts.push_back(
+        arena.Eq(arena.Variable(arena.Declare("value " + name, {}, arena.Real())), s.Number(value)));
+  };
+  formula("given", k.given);
+  formula("during", k.during);
+  formula("post", k.post);
+  for (size_t i = 0; i < k.starts.size(); ++i) formula("start " + std::to_string(i), k.starts[i]);
+  for (size_t i = 0; i < k.moving.size(); ++i)
+    number("bridge of " + arena.symbol(arena.symbol_of(k.moving[i])).name, k.bridges[i]);
+  number("least", k.least);
+  if (k.most) number("most", *k.most);
+  return arena.And(parts);
+}
+
 }  // namespace
 
 std::vector<TermId> BridgeInto(Statements& s, const Node& n, std::vector<TermId> known) {
@@ -136,18 +159,15 @@ void StateKeeping(Statements& s, const Node& n, const std::string& what, const F
   Conjunction known = Conjuncts(arena, s.Related(roots, given));
   std::erase_if(known, [&](TermId part) { return ranges.contains(part); });
   keeping.given = arena.And(std::vector<TermId>(known.begin(), known.end()));
-  std::vector<TermId> all{keeping.given, keeping.during, keeping.post};
   for (const Conjunction& way : facts) {
     std::vector<TermId> facts_of_way(way.begin(), way.end());
     facts_of_way.insert(facts_of_way.end(), pre.begin(), pre.end());
     const TermId start = s.Related(roots, facts_of_way);
     keeping.starts.push_back(expr::Substitute(arena, start, earlier));
-    all.push_back(keeping.starts.back());
   }
-  const TermId clock = s.graph().world->clock;
-  all.push_back(step.most ? arena.Le(clock, s.Number(*step.most)) : arena.True());
+  const TermId name = NameOf(s, keeping);
   s.Keep(n.span, {"a continuous motion that keeps " + what, "nothing that moves continuously keeps " + what},
-         arena.And(all), std::move(keeping));
+         name, std::move(keeping));
 }
 
 }  // namespace rondo::choreo

@@ -69,9 +69,13 @@ struct Obligation {
   expr::TermId rest;
   std::optional<robot::Meeting> meeting;  ///< what `formula` says, if it is about shapes
   std::optional<Keeping> keeping;
-  NodeId node;                    ///< the motion, message or choice that it is about, if it is about one
+  /// The motions, messages and choices that it is about: the first, and others of which the same was stated.
+  std::vector<NodeId> nodes;
   std::vector<size_t> instances;  ///< the motions that it is about
 };
+
+/// The node that an obligation is about, if it is about one.
+inline NodeId NodeOf(const Obligation& o) { return o.nodes.empty() ? NodeId() : o.nodes.front(); }
 
 /// What cannot even be stated: a body or a region that is missing, assumptions that rest on each other.
 struct Missing {

@@ -11,6 +11,15 @@ namespace rondo::choreo {
 using expr::Rational;
 using expr::TermId;
 
+namespace {
+
+std::vector<NodeId> Joined(std::vector<NodeId> nodes, NodeId node) {
+  if (std::ranges::find(nodes, node) == nodes.end()) nodes.push_back(node);
+  return nodes;
+}
+
+}  // namespace
+
 Claim Noun(const std::string& title) { return {title, title + " may not hold"}; }
 Claim State(const std::string& state) { return {"a state " + state, "there is no state " + state}; }
 
@@ -88,10 +97,16 @@ void Statements::Lacks(diag::Span span, std::string what, bool region) {
 // What is plain is not stated. Equal formulas are one only if what else is known is the same: a contradiction
 // there would prove the one and not the other.
 void Statements::Add(Obligation obligation) {
-  obligation.node = node;
+  obligation.nodes.assign(node.valid() ? 1 : 0, node);
   obligation.instances = instances;
   if (!obligation.keeping && obligation.formula == arena_.Constant(obligation.satisfiable)) return;
-  if (!known_.emplace(obligation.formula, obligation.rest).second) return;
+  const auto [it, fresh] = known_.try_emplace({obligation.formula, obligation.rest}, result_.all.size());
+  if (!fresh) {
+    std::vector<NodeId>& nodes = result_.all[it->second].nodes;
+    // What is about no node in particular stays so.
+    if (!nodes.empty()) nodes = node.valid() ? Joined(nodes, node) : std::vector<NodeId>();
+    return;
+  }
   result_.all.push_back(std::move(obligation));
 }
 

@@ -66,8 +66,8 @@ class Statements {
 
   const Graph& graph_;
   expr::Arena& arena_;
-  std::map<expr::TermId, std::vector<expr::TermId>> ranges_;  // by variable
-  std::set<std::pair<expr::TermId, expr::TermId>> known_;     // formulas with their `rest`
+  std::map<expr::TermId, std::vector<expr::TermId>> ranges_;       // by variable
+  std::map<std::pair<expr::TermId, expr::TermId>, size_t> known_;  // formulas with their `rest`: which it is
   std::unordered_map<expr::TermId, std::set<expr::TermId>> variables_;
   Obligations result_;
 };

@@ -188,7 +188,7 @@ class Deciding {
     if (std::holds_alternative<solve::Sat>(answer)) {
       Proved(Way::kPoints);
       SetWitness(answer);
-    } else if (std::holds_alternative<solve::Unsat>(answer)) {
+    } else if (IsUnsat(answer)) {
       decision_.verdict = Verdict::kRefuted;
     } else {
       Undecided(answer);

@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <map>
 #include <mutex>
-#include <set>
 
 #include "base/file.h"
 #include "base/parallel.h"
@@ -45,20 +46,24 @@ class Proving {
   }
 
  private:
-  // Of a step that never begins nothing else has to be possible: that it never begins is said anyway.
+  // A step that never begins refutes nothing; that it never begins is said anyway.
   void SkipWhatNeverHappens() {
-    std::set<NodeId> never;
+    std::map<NodeId, bool> never;  // whether that is certified
     for (size_t i = 0; i < proofs_.all.size(); ++i) {
-      if (obligations_.all[i].kind == ObligationKind::kReached &&
-          proofs_.all[i].decision.verdict == Verdict::kRefuted)
-        never.insert(obligations_.all[i].node);
+      const Obligation& o = obligations_.all[i];
+      if (o.kind != ObligationKind::kReached || proofs_.all[i].decision.verdict != Verdict::kRefuted)
+        continue;
+      for (const NodeId n : o.nodes) never.emplace(n, proofs_.all[i].certified);
     }
     for (size_t i = 0; i < proofs_.all.size(); ++i) {
       const Obligation& o = obligations_.all[i];
       Decision& d = proofs_.all[i].decision;
-      if ((o.satisfiable || o.keeping) && o.kind != ObligationKind::kReached && never.contains(o.node) &&
-          d.verdict == Verdict::kRefuted)
-        d.verdict = Verdict::kProved;
+      const bool there =
+          !o.nodes.empty() && std::ranges::all_of(o.nodes, [&](NodeId n) { return never.contains(n); });
+      if (o.kind == ObligationKind::kReached || !there || d.verdict != Verdict::kRefuted) continue;
+      d.verdict = Verdict::kProved;
+      d.reason.clear();
+      proofs_.all[i].certified = std::ranges::all_of(o.nodes, [&](NodeId n) { return never.at(n); });
     }
   }
 
@@ -109,6 +114,9 @@ class Proving {
       proofs_.problems.push_back(
           fmt::format("the certificate of \"{}\" was rejected: {}", obligation.title, rejected));
     }
+    // That a step never begins proves what would fail in it.
+    if (proof.decision.verdict == Verdict::kRefuted && obligation.kind == ObligationKind::kReached && certify)
+      Certify(proof, obligation, number);
     if (proof.decision.verdict != Verdict::kProved) return proof;
     if (options_.cache != nullptr && proof.certified == certify)
       options_.cache->Store(key, {std::string(kEngine), {}});

@@ -110,7 +110,7 @@ void Explain(const Graph& graph, const Obligation& o, const Witness& witness, di
   const auto clock = witness.values.find(graph.world->clock);
   std::string where = PlaceOf(graph, witness);
   if (!where.empty()) where = "at the point " + where;
-  const bool moving = o.node.valid() && graph[o.node].kind == NodeKind::kMotion &&
+  const bool moving = NodeOf(o).valid() && graph[NodeOf(o)].kind == NodeKind::kMotion &&
                       o.kind != ObligationKind::kPrecondition && o.kind != ObligationKind::kStart;
   if (moving && clock != witness.values.end()) {
     where = fmt::format("{}{} s after the step has begun", where.empty() ? "" : where + ", ",
@@ -191,14 +191,14 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
     const auto follows = [&](size_t j) {
       const Obligation& p = obligations.all[j];
       // Nor can a contract be kept that contradicts itself.
-      const bool own = o.keeping && p.kind == ObligationKind::kContract && !p.node.valid() &&
+      const bool own = o.keeping && p.kind == ObligationKind::kContract && p.nodes.empty() &&
                        !p.instances.empty() &&
                        std::ranges::find(o.instances, p.instances[0]) != o.instances.end();
       if (own) return proofs.all[j].decision.verdict == Verdict::kRefuted;
-      return p.kind == ObligationKind::kPrecondition && p.node == o.node &&
+      return p.kind == ObligationKind::kPrecondition && p.nodes == o.nodes &&
              (o.keeping || p.instances == o.instances) && proofs.all[j].decision.verdict == Verdict::kRefuted;
     };
-    if ((o.kind == ObligationKind::kContract || o.keeping) && o.node.valid() &&
+    if ((o.kind == ObligationKind::kContract || o.keeping) && !o.nodes.empty() &&
         std::ranges::any_of(std::views::iota(size_t{0}, obligations.all.size()), follows))
       continue;
     if (d.verdict == Verdict::kRefuted) {

@@ -317,13 +317,16 @@ void Runner::Keep(const Stage& stage, double from, double to, const interval::Bo
   attempt_.leaf.tube.push_back({from, to, std::move(box)});
 }
 
-// Are the errors out of proportion? Then what follows is not worth its time: smaller parts will be.
+// Are the errors out of proportion? Then what follows is not worth its time: smaller parts will be. What inputs do
+// is the same in smaller parts: beside it, errors are compared with all of the initial set.
 bool Runner::TooWide(const Flow& flow, double share) const {
   if (monomials_->symbols() == 0) return false;
+  const bool driven = !stages_.problem().inputs.empty();
+  constexpr double kDriven = 10;
   double worst = 0;
   for (size_t i = 0; i < box_.size(); ++i) {
     const double radius = RangeOf(*monomials_, flow.set().Polynomial(i)).Width() * 0.5;
-    const double start = box_[i].Width() * 0.5;
+    const double start = driven ? kDriven * whole_[i].Width() : box_[i].Width() * 0.5;
     const double error = flow.set().Error(i);
     if (symbol_of_[i] >= 0) worst = std::fmax(worst, error / std::fmax(radius, start));
   }

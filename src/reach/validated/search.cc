@@ -76,18 +76,27 @@ std::optional<Refuted> Search::Try(std::vector<double> start) {
       course.inputs.push_back(std::move(values));
     }
   }
-  Violation worst = trajectories_.Worst(course, horizon / 400, 0, 1e-10, stop_);
-  if (stop_.StopRequested()) return std::nullopt;
-  if (worst.miss <= 0) {
-    if (worst.miss > -1e299 && (!closest_ || worst.miss > closest_->miss)) closest_ = worst;
-    return std::nullopt;
+  // The first miss may be so small that nothing can be made of it: another may follow, of this claim or of another.
+  double margin = 0;
+  for (const double next : {1e-6, 1e-3, 0.0}) {
+    Violation worst = trajectories_.Worst(course, horizon / 400, margin, 1e-10, stop_);
+    if (stop_.StopRequested()) return std::nullopt;
+    if (worst.miss <= 0) {
+      if (worst.miss > -1e299 && (!closest_ || worst.miss > closest_->miss)) closest_ = worst;
+      return std::nullopt;
+    }
+    if (worst.miss <= margin) return std::nullopt;
+    const double size = SizeOf(worst.state);
+    // Events shift instants: so small a miss is the integrator's.
+    const bool clear = problem_.events.empty() || worst.miss > 1e-9 * size;
+    if (clear) {
+      Refuted refuted{course, std::move(worst), false};
+      refuted.certain = Confirm(refuted);
+      if (refuted.certain || Repeats(refuted, margin)) return refuted;
+    }
+    margin = next * size;
   }
-  // Events shift instants: so small a miss is the integrator's.
-  if (!problem_.events.empty() && worst.miss <= 1e-9 * SizeOf(worst.state)) return std::nullopt;
-  Refuted refuted{std::move(course), std::move(worst), false};
-  refuted.certain = Confirm(refuted);
-  if (!refuted.certain && !Repeats(refuted)) return std::nullopt;
-  return refuted;
+  return std::nullopt;
 }
 
 // Is the start one that is assumed? For sure: exactly, or by enclosures.
@@ -115,9 +124,9 @@ interval::Box Search::StartBox(const std::vector<double>& start) const {
 }
 
 // A violation that could not be enclosed counts if it does not depend on how finely it was computed.
-bool Search::Repeats(const Refuted& refuted) {
+bool Search::Repeats(const Refuted& refuted, double margin) {
   const double horizon = stages_.horizon();
-  const Violation fine = trajectories_.Worst(refuted.course, horizon / 20000, 0, 1e-13, stop_);
+  const Violation fine = trajectories_.Worst(refuted.course, horizon / 20000, margin, 1e-13, stop_);
   if (stop_.StopRequested() || fine.miss <= 0) return false;
   if (!problem_.events.empty()) {
     // Events shift instants: both runs have to break the claim clearly, and nearly at the same time.

@@ -44,7 +44,8 @@ class Search {
   interval::Box StartBox(const std::vector<double>& start) const;
   bool Confirm(const Refuted& refuted);
   bool ConfirmWithEvents(const Refuted& refuted);
-  bool Repeats(const Refuted& refuted);
+  /// `margin`: misses that were passed over.
+  bool Repeats(const Refuted& refuted, double margin);
 
   const Problem& problem_;
   Stages& stages_;
