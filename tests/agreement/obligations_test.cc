@@ -177,7 +177,7 @@ robot B { state x: length in [-5 m, 5 m]  input g: length in [-5 m, 5 m]
   // A motion that nobody could begin here.
   EXPECT_TRUE(wrong(R"(world W { b: B obstacle wall: box(world, (1 m, -9 m, -9 m), (2 m, 9 m, 9 m)) }
     choreography C in W { initially b.x == 0 b: Far() })",
-                    "contract"));
+                    "keeping"));
 }
 
 // Of many robots only those are compared that are near each other, and they are.

@@ -50,7 +50,7 @@ check("folder", done.returncode == 1 and "is a folder" in done.stderr, done.stde
 check("proved", rondo("prove", LINEFORM).returncode == 0)
 check("refuted", rondo("prove", "examples/koord/mutex_naive.koord").returncode == 1)
 unknown = rondo("prove", "--no-cache", "tests/mutants/delivery_no_remove.koord", "--timeout", "1")
-check("unknown", unknown.returncode == 3 and re.search("^unknown: .*taken", unknown.stdout, re.M), unknown.stdout[-500:])
+check("unknown", unknown.returncode == 3 and re.search("^unknown: ", unknown.stdout, re.M), unknown.stdout[-500:])
 
 # SMT-LIB scripts: expected answers, several files, engines compared, models, what is too hard, what is wrong.
 SCRIPTS = sorted((ROOT / "examples/smt").glob("*.smt2"))

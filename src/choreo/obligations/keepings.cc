@@ -59,7 +59,7 @@ TermId NameOf(Statements& s, const Keeping& k) {
 
 }  // namespace
 
-std::vector<TermId> BridgeInto(Statements& s, const Node& n, std::vector<TermId> known) {
+std::vector<TermId> BridgeInto(Statements& s, const Node& n, const Facts& facts, std::vector<TermId> known) {
   expr::Arena& arena = s.arena();
   std::set<TermId> moving;
   std::vector<TermId> begins;
@@ -71,7 +71,13 @@ std::vector<TermId> BridgeInto(Statements& s, const Node& n, std::vector<TermId>
     }
     known.push_back(i.contract.pre);
   }
-  const auto said = Conjuncts(arena, arena.And(known));
+  const Conjunction always = Conjuncts(arena, arena.And(known));
+  known.push_back(ToTerm(arena, facts));
+  // Most motions begin exactly where the one before has ended.
+  const auto is_said = [&](TermId part) {
+    return always.contains(part) ||
+           std::ranges::all_of(facts, [&](const Conjunction& way) { return way.contains(part); });
+  };
   std::vector<TermId> bridge;
   expr::Substitution earlier;
   for (const Part& p : n.parts) {
@@ -81,7 +87,7 @@ std::vector<TermId> BridgeInto(Statements& s, const Node& n, std::vector<TermId>
         arena.Variable(arena.Declare("bridge of " + s.graph().NameOf(p.robot), {}, arena.Real()));
     const size_t before = bridge.size();
     for (const TermId part : Conjuncts(arena, s.AtClock(i.contract.during, 0))) {
-      if (said.contains(part)) continue;
+      if (is_said(part)) continue;
       for (size_t k = 0; k < states.size(); ++k) {
         const TermId v = states[k].term;
         if (!i.contract.modifies[k] || earlier.contains(v)) continue;

@@ -175,8 +175,11 @@ class Builder {
            Known(id, context), ObligationKind::kReached);
     StateKeeping(s_, n, TextOf(n), facts_[id.index()], context.assumptions, proved_);
     Occupy(n, during, context, "");
-    const auto bridge = BridgeInto(s_, n, Known(id, context));
-    if (!bridge.empty()) Occupy(n, bridge, context, " (before it is where `during` begins)");
+    const auto bridge = BridgeInto(s_, n, facts_[id.index()], context.assumptions);
+    if (bridge.empty()) return;
+    s_.bridge = true;
+    Occupy(n, bridge, context, " (before it is where `during` begins)");
+    s_.bridge = false;
   }
 
   // What the robots of a step do in space while these formulas hold; `when` that is, for messages.

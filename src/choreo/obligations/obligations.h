@@ -72,6 +72,8 @@ struct Obligation {
   /// The motions, messages and choices that it is about: the first, and others of which the same was stated.
   std::vector<NodeId> nodes;
   std::vector<size_t> instances;  ///< the motions that it is about
+  /// About the way to where `during` begins: holds if kStart holds at the same nodes.
+  bool bridge = false;
 };
 
 /// The node that an obligation is about, if it is about one.

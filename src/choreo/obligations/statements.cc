@@ -99,10 +99,13 @@ void Statements::Lacks(diag::Span span, std::string what, bool region) {
 void Statements::Add(Obligation obligation) {
   obligation.nodes.assign(node.valid() ? 1 : 0, node);
   obligation.instances = instances;
+  obligation.bridge = bridge;
   if (!obligation.keeping && obligation.formula == arena_.Constant(obligation.satisfiable)) return;
   const auto [it, fresh] = known_.try_emplace({obligation.formula, obligation.rest}, result_.all.size());
   if (!fresh) {
-    std::vector<NodeId>& nodes = result_.all[it->second].nodes;
+    Obligation& same = result_.all[it->second];
+    same.bridge = same.bridge && bridge;
+    std::vector<NodeId>& nodes = same.nodes;
     // What is about no node in particular stays so.
     if (!nodes.empty()) nodes = node.valid() ? Joined(nodes, node) : std::vector<NodeId>();
     return;

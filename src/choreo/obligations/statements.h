@@ -29,6 +29,7 @@ class Statements {
 
   NodeId node;
   std::vector<size_t> instances;
+  bool bridge = false;
 
   /// The last formula has no solution together with the others. Those that share no variable with it,
   /// directly or over others, become the `rest`.
@@ -81,10 +82,10 @@ void StateKeeping(Statements& statements, const Node& step, const std::string& w
                   const std::vector<expr::TermId>& assumptions, const std::set<std::string>& proved);
 
 /// A motion may begin a little beside where its `during` says that it is. The states on the straight line
-/// from where the step begins (`known`, and preconditions) to there, as formulas; empty if every motion
-/// begins where it says.
-std::vector<expr::TermId> BridgeInto(Statements& statements, const Node& step,
-                                     std::vector<expr::TermId> known);
+/// from where the step begins (facts, assumptions, preconditions) to there, as formulas; empty if every
+/// motion begins where it says.
+std::vector<expr::TermId> BridgeInto(Statements& statements, const Node& step, const Facts& facts,
+                                     std::vector<expr::TermId> assumptions);
 
 /// That something can be sent as a message promises, whenever `known` holds: receivers rely on it.
 void StatePromise(Statements& statements, const Node& message, std::vector<expr::TermId> known);

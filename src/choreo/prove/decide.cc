@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "choreo/prove/answer.h"
+#include "choreo/prove/exact_point.h"
 #include "choreo/prove/keep.h"
 #include "expr/defined.h"
 #include "expr/import.h"
@@ -126,15 +127,18 @@ class Deciding {
   }
 
   void SetWitness(const solve::Answer& answer) {
+    const auto* sat = std::get_if<solve::Sat>(&answer);
+    SetWitness(PointOf(answer), sat != nullptr && sat->exact);
+  }
+
+  void SetWitness(const Numeric::Point& found, bool exact) {
     NameVariables();
-    const Numeric::Point found = PointOf(answer);
     decision_.witness.values.clear();
     for (const auto& [original, own] : names_) {
       const auto it = found.find(own);
       if (it != found.end()) decision_.witness.values.emplace(original, it->second);
     }
-    const auto* sat = std::get_if<solve::Sat>(&answer);
-    decision_.witness.exact = sat != nullptr && sat->exact;
+    decision_.witness.exact = exact;
   }
 
   void Undecided(const solve::Answer& answer) {
@@ -203,6 +207,11 @@ class Deciding {
       if (std::holds_alternative<solve::Sat>(answer)) {
         decision_.verdict = Verdict::kRefuted;
         SetWitness(answer);
+      } else if (const auto exact = std::holds_alternative<solve::DeltaSat>(answer)
+                                        ? ExactPoint(arena_, f, PointOf(answer))
+                                        : std::nullopt) {
+        decision_.verdict = Verdict::kRefuted;
+        SetWitness(*exact, true);
       } else {
         Undecided(answer);
       }
@@ -319,6 +328,15 @@ class Deciding {
     }
     solve::Answer answer = Ask(arena_.And(near), false);
     if (std::holds_alternative<solve::Sat>(answer)) return SetWitness(answer);
+    if (std::holds_alternative<solve::DeltaSat>(answer)) {  // where shapes only touch
+      const Numeric::Point nearly = PointOf(answer);
+      for (size_t i = 0; i < 3; ++i) {
+        const auto& [original, own] = names_[names_.size() - 3 + i];
+        if (const auto it = nearly.find(own); it != nearly.end())
+          decision_.witness.values[original] = it->second;
+      }
+      return;
+    }
     for (size_t i = 0; i < 3; ++i) decision_.witness.values.erase(names_[names_.size() - 3 + i].first);
   }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <map>
 #include <mutex>
+#include <set>
 
 #include "base/file.h"
 #include "base/parallel.h"
@@ -28,8 +29,20 @@ class Proving {
   Proofs Run() {
     const size_t total = obligations_.all.size();
     proofs_.all.resize(total);
-    size_t done = 0;
-    base::ParallelFor(total, options_.jobs, [&](size_t i) {
+    // What bridges do matters only where a motion needs one.
+    std::vector<size_t> plain, bridges;
+    for (size_t i = 0; i < total; ++i) (obligations_.all[i].bridge ? bridges : plain).push_back(i);
+    Decide(plain);
+    FindStarts();
+    Decide(bridges);
+    SkipWhatNeverHappens();
+    return std::move(proofs_);
+  }
+
+ private:
+  void Decide(const std::vector<size_t>& which) {
+    base::ParallelFor(which.size(), options_.jobs, [&](size_t k) {
+      const size_t i = which[k];
       const Obligation& obligation = obligations_.all[i];
       Proof proof;
       const auto start = Clock::now();
@@ -39,13 +52,26 @@ class Proving {
       if (proof.interrupted) proof.decision.reason = "interrupted";
       const std::scoped_lock lock(mutex_);
       proofs_.all[i] = std::move(proof);
-      if (options_.progress) options_.progress(++done, total, obligation.title);
+      if (options_.progress) options_.progress(++done_, obligations_.all.size(), obligation.title);
     });
-    SkipWhatNeverHappens();
-    return std::move(proofs_);
   }
 
- private:
+  // Where all motions of a step begin exactly as their `during` does, and whether that is certified.
+  void FindStarts() {
+    std::set<NodeId> open;
+    for (size_t i = 0; i < proofs_.all.size(); ++i) {
+      const Obligation& o = obligations_.all[i];
+      if (o.kind != ObligationKind::kStart) continue;
+      for (const NodeId n : o.nodes) {
+        const bool certified = proofs_.all[i].certified;
+        const auto [it, fresh] = exact_.try_emplace(n, certified);
+        if (!fresh) it->second = it->second && certified;
+        if (proofs_.all[i].decision.verdict != Verdict::kProved) open.insert(n);
+      }
+    }
+    for (const NodeId n : open) exact_.erase(n);
+  }
+
   // A step that never begins refutes nothing; that it never begins is said anyway.
   void SkipWhatNeverHappens() {
     std::map<NodeId, bool> never;  // whether that is certified
@@ -77,6 +103,12 @@ class Proving {
 
   Proof One(const Obligation& obligation, size_t number) {
     Proof proof;
+    const auto exact = [&](NodeId n) { return exact_.contains(n); };
+    if (obligation.bridge && std::ranges::all_of(obligation.nodes, exact)) {
+      proof.decision.verdict = Verdict::kProved;
+      proof.certified = std::ranges::all_of(obligation.nodes, [&](NodeId n) { return exact_.at(n); });
+      return proof;
+    }
     const bool asks = options_.cache != nullptr || !options_.smt_out.empty();
     const std::string question = asks ? QuestionOf(obligation) : std::string();
     if (!options_.smt_out.empty() && !obligation.keeping) {
@@ -101,7 +133,8 @@ class Proving {
     for (const bool lemmas : {true, false}) {
       solve::icp::Options engine;
       engine.lemmas = lemmas;
-      proof.decision = Decide(obligation, *graph_.world, arena_, engine, options_.limits, options_.stop);
+      proof.decision =
+          choreo::Decide(obligation, *graph_.world, arena_, engine, options_.limits, options_.stop);
       if (proof.decision.verdict != Verdict::kProved || !certify) break;
       rejected = Certify(proof, obligation, number);
       if (rejected.empty()) break;
@@ -162,6 +195,8 @@ class Proving {
   const ProveOptions& options_;
   std::mutex mutex_;
   Proofs proofs_;
+  size_t done_ = 0;
+  std::map<NodeId, bool> exact_;  // steps without bridges; whether that is certified
 };
 
 }  // namespace

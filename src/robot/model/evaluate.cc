@@ -361,10 +361,11 @@ Value Evaluator::Comparison(const Expr& e, Value a, Value b) {
     left = Square(arena_, a.terms[0]);
     right = *b.squared;
   }
-  if (e.text == "<") return Boolean(arena_.Lt(left, right));
-  if (e.text == "<=") return Boolean(arena_.Le(left, right));
-  if (e.text == ">") return Boolean(arena_.Lt(right, left));
-  return Boolean(arena_.Le(right, left));
+  if (e.text[0] == '>') std::swap(left, right);
+  // Angles are multiples of pi: their order is known.
+  if (IsBelow(arena_, left, right)) return Boolean(arena_.True());
+  if (IsBelow(arena_, right, left)) return Boolean(arena_.False());
+  return Boolean(e.text.size() == 1 ? arena_.Lt(left, right) : arena_.Le(left, right));
 }
 
 Value Evaluator::Equality(const Expr& e, Value a, Value b) {
