@@ -4,6 +4,7 @@
   motions.py RONDO
 """
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -66,6 +67,8 @@ with tempfile.TemporaryDirectory() as folder:
     place.mkdir(parents=True)
     models = {m.name: m.read_text() for m in (ROOT / "models").glob("*.rondo")}
     for name, example, old, new, kind in FAULTS:
+        if example == "sorting" and "RONDO_CASES" not in os.environ:
+            continue  # half a minute under sanitizers
         text = (EXAMPLES / f"{example}.rondo").read_text()
         if old not in text:  # in a model
             text = re.sub(r'import "../../models/(.*)"\n', lambda m: models[m.group(1)], text)
