@@ -13,7 +13,6 @@ namespace rondo::choreo {
 namespace {
 
 using expr::Arena;
-using expr::Rational;
 using expr::TermId;
 using robot::Shape;
 

@@ -35,7 +35,7 @@ Rational Simplest(double x, double slack) {
     p1 = std::move(p2);
     q0 = std::move(q1);
     q1 = std::move(q2);
-    const Rational value = p1 / q1;
+    Rational value = p1 / q1;
     if (std::fabs(value.ToDouble() - x) <= slack || rest - whole < 1e-12) return value;
     rest = 1 / (rest - whole);
   }

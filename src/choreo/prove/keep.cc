@@ -202,7 +202,8 @@ class Keeper {
                                                   const std::map<TermId, double>& to, double share,
                                                   double& reach) {
     constexpr double kFarthest = 20, kGrowth = 1.3;
-    for (double d = std::max(reach / (kGrowth * kGrowth), 1e-3); d < kFarthest; d *= kGrowth) {
+    double d = std::max(reach / (kGrowth * kGrowth), 1e-3);
+    while (d < kFarthest) {
       std::vector<TermId> near{allowed, s_.start(), k_.given};
       for (const TermId v : free_) {
         const double middle = from.at(v) + (to.at(v) - from.at(v)) * share;
@@ -210,7 +211,10 @@ class Keeper {
         near.push_back(arena_.Le(v, Number(Rational::FromDouble(middle + d))));
       }
       const auto point = s_.Solution(arena_.And(near));
-      if (!point) continue;
+      if (!point) {
+        d *= kGrowth;
+        continue;
+      }
       reach = d;
       std::map<TermId, TermId> result;
       for (const TermId v : free_) {
