@@ -54,6 +54,7 @@ TermId NameOf(Statements& s, const Keeping& k) {
     number("bridge of " + arena.symbol(arena.symbol_of(k.moving[i])).name, k.bridges[i]);
   number("least", k.least);
   if (k.most) number("most", *k.most);
+  if (k.ends) number("ends", Rational(1));
   return arena.And(parts);
 }
 
@@ -134,7 +135,8 @@ void StateKeeping(Statements& s, const Node& n, const std::string& what, const F
     }
     pre.push_back(i.contract.pre);
     during.push_back(i.contract.during);
-    if (!i.duration.interruptible) post.push_back(i.contract.post);
+    keeping.ends = keeping.ends || !p.duration.interruptible;
+    if (!p.duration.interruptible) post.push_back(i.contract.post);
     for (size_t k = 0; k < body.states.size(); ++k) {
       const robot::Variable& v = body.states[k];
       if (!i.contract.modifies[k]) continue;

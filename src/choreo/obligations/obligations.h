@@ -54,6 +54,7 @@ struct Keeping {
   expr::TermId post;     ///< of motions that cannot be interrupted
   expr::Rational least;  ///< seconds that the step takes, at least
   std::optional<expr::Rational> most;  ///< at most; none: for ever, if nobody interrupts it
+  bool ends = false;                   ///< some motion cannot be interrupted, so that it has to end
 };
 
 /// To show: `formula` has no solution together with `rest`; or, if `satisfiable`, that it has one; or, if

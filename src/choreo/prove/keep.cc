@@ -140,7 +140,7 @@ class Keeper {
                   : arena_.Add(from, arena_.Mul(arena_.Mul(Number(Rational(1) / time_), s_.clock()), whole));
     }
     Curve curve{piece};
-    if (!k_.most) {
+    if (!k_.most && !k_.ends) {
       CurvePiece rest{time_, std::nullopt, determined_};
       for (const TermId v : free_) rest.value[v] = end_.at(v);
       curve.push_back(rest);
@@ -190,7 +190,7 @@ class Keeper {
       curve.push_back(std::move(piece));
       last = std::move(next);
     }
-    if (!k_.most) {
+    if (!k_.most && !k_.ends) {
       CurvePiece rest{time_, std::nullopt, determined_};
       for (const TermId v : free_) rest.value[v] = end_.at(v);
       curve.push_back(rest);
