@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "choreo/obligations/solve_for.h"
 #include "expr/substitute.h"
 
 namespace rondo::choreo {
@@ -121,7 +122,7 @@ class Flow {
     }
     for (const Part& p : motion.parts) {
       const robot::Contract& c = graph_.instances[p.instance].contract;
-      news.merge(Conjuncts(arena_, c.post));
+      news.merge(Conjuncts(arena_, expr::Substitute(arena_, c.post, {{graph_.world->clock, end}})));
       news.merge(AtTheEnd(c, end));
     }
     std::set<TermId> old = ChangingIn(graph_, motion);
@@ -159,7 +160,8 @@ class Flow {
     std::set<TermId> given{graph_.world->clock};
     for (const TermId part : Conjuncts(arena_, contract.post)) {
       const auto variables = robot::VariablesOf(arena_, {part});
-      if (arena_.op(part) == expr::Op::kEq && variables.size() == 1) given.insert(*variables.begin());
+      if (variables.size() == 1 && SolveFor(arena_, part, *variables.begin()))
+        given.insert(*variables.begin());
     }
     Conjunction result;
     for (const TermId part : Conjuncts(arena_, contract.during)) {

@@ -17,7 +17,7 @@ namespace {
 // A motion may begin no farther from its `during` than this: 1 cm, 1 degree.
 Rational BridgeOf(lang::Dimension dimension) {
   if (dimension == robot::kLength) return Rational(1) / Rational(100);
-  if (dimension == robot::kAngle) return *Rational::Parse("0.01745");
+  if (dimension == robot::kAngle) return *Rational::Parse("0.0174533");
   return Rational(0);
 }
 
@@ -54,16 +54,17 @@ TermId NameOf(Statements& s, const Keeping& k) {
     number("bridge of " + arena.symbol(arena.symbol_of(k.moving[i])).name, k.bridges[i]);
   number("least", k.least);
   if (k.most) number("most", *k.most);
-  if (k.ends) number("ends", Rational(1));
+  if (k.ends) number("ends", Rational(k.chooses ? 2 : 1));
   return arena.And(parts);
 }
 
 }  // namespace
 
-std::vector<TermId> BridgeInto(Statements& s, const Node& n, const Facts& facts, std::vector<TermId> known) {
+Bridge BridgeInto(Statements& s, const Node& n, const Facts& facts, std::vector<TermId> known) {
+  // Who may be interrupted at once would never have got there.
+  if (StepOf(n).least.IsZero()) return {};
   expr::Arena& arena = s.arena();
   std::set<TermId> moving;
-  std::vector<TermId> begins;
   for (const Part& p : n.parts) {
     const Instance& i = s.graph().instances[p.instance];
     const auto& states = s.graph().BodyOf(p.robot).states;
@@ -79,7 +80,8 @@ std::vector<TermId> BridgeInto(Statements& s, const Node& n, const Facts& facts,
     return always.contains(part) ||
            std::ranges::all_of(facts, [&](const Conjunction& way) { return way.contains(part); });
   };
-  std::vector<TermId> bridge;
+  Bridge result;
+  std::vector<TermId>& bridge = result.states;
   expr::Substitution earlier;
   for (const Part& p : n.parts) {
     const Instance& i = s.graph().instances[p.instance];
@@ -97,6 +99,7 @@ std::vector<TermId> BridgeInto(Statements& s, const Node& n, const Facts& facts,
         if (!to || std::ranges::any_of(variables, [&](TermId w) { return moving.contains(w); })) continue;
         const TermId from = StartOf(arena, v);
         earlier[v] = from;
+        result.bridged.insert(v);
         const TermId way = arena.Sub(*to, from);
         const TermId most = s.Number(BridgeOf(states[k].dimension));
         bridge.insert(bridge.end(), {arena.Eq(v, arena.Add(from, arena.Mul(share, way))),
@@ -108,14 +111,15 @@ std::vector<TermId> BridgeInto(Statements& s, const Node& n, const Facts& facts,
     bridge.push_back(arena.Le(s.Number(Rational(0)), share));
     bridge.push_back(arena.Le(share, s.Number(Rational(1))));
   }
-  if (earlier.empty()) return bridge;
+  if (earlier.empty()) return result;
   for (const TermId formula : known) bridge.push_back(expr::Substitute(arena, formula, earlier));
   bridge.push_back(arena.Eq(s.graph().world->clock, s.Number(Rational(0))));
-  return bridge;
+  return result;
 }
 
 void StateKeeping(Statements& s, const Node& n, const std::string& what, const Facts& facts,
-                  const std::vector<TermId>& assumptions, const std::set<std::string>& proved) {
+                  const std::vector<TermId>& assumptions, const std::set<TermId>& bridged,
+                  const std::set<std::string>& proved) {
   expr::Arena& arena = s.arena();
   Keeping keeping;
   const Duration step = StepOf(n);
@@ -123,6 +127,7 @@ void StateKeeping(Statements& s, const Node& n, const std::string& what, const F
   keeping.most = step.most;
   std::vector<TermId> during, post, pre, given = assumptions;
   Conjunction ranges;
+  size_t keeping_something = 0;
   expr::Substitution earlier;
   const auto before = [&](TermId v) { return earlier[v] = StartOf(arena, v); };
   for (const Part& p : n.parts) {
@@ -135,6 +140,10 @@ void StateKeeping(Statements& s, const Node& n, const std::string& what, const F
     }
     pre.push_back(i.contract.pre);
     during.push_back(i.contract.during);
+    if (i.contract.during != arena.True()) {
+      ++keeping_something;
+      keeping.chooses = !p.duration.interruptible;
+    }
     keeping.ends = keeping.ends || !p.duration.interruptible;
     if (!p.duration.interruptible) post.push_back(i.contract.post);
     for (size_t k = 0; k < body.states.size(); ++k) {
@@ -142,11 +151,12 @@ void StateKeeping(Statements& s, const Node& n, const std::string& what, const F
       if (!i.contract.modifies[k]) continue;
       keeping.moving.push_back(v.term);
       keeping.before.push_back(before(v.term));
-      keeping.bridges.push_back(BridgeOf(v.dimension));
+      keeping.bridges.push_back(bridged.contains(v.term) ? BridgeOf(v.dimension) : Rational(0));
       during.push_back(Range(arena, v));
       ranges.merge(Conjuncts(arena, during.back()));
     }
   }
+  keeping.chooses = keeping.ends && (keeping_something == 0 || (keeping_something == 1 && keeping.chooses));
   keeping.during = arena.And(during);
   keeping.post = arena.And(post);
   // Whoever may stay where it is keeps everything.

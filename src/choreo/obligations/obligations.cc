@@ -172,12 +172,12 @@ class Builder {
     for (const Part& p : n.parts) s_.instances.push_back(p.instance);
     s_.Sat(n.span, {fmt::format("{} begins", TextOf(n)), fmt::format("{} never begins", TextOf(n))},
            Known(id, context), ObligationKind::kReached);
-    StateKeeping(s_, n, TextOf(n), facts_[id.index()], context.assumptions, proved_);
+    const Bridge bridge = BridgeInto(s_, n, facts_[id.index()], context.assumptions);
+    StateKeeping(s_, n, TextOf(n), facts_[id.index()], context.assumptions, bridge.bridged, proved_);
     Occupy(n, during, context, "");
-    const auto bridge = BridgeInto(s_, n, facts_[id.index()], context.assumptions);
-    if (bridge.empty()) return;
+    if (bridge.bridged.empty()) return;
     s_.bridge = true;
-    Occupy(n, bridge, context, " (before it is where `during` begins)");
+    Occupy(n, bridge.states, context, " (before it is where `during` begins)");
     s_.bridge = false;
   }
 

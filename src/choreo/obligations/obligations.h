@@ -55,6 +55,7 @@ struct Keeping {
   expr::Rational least;  ///< seconds that the step takes, at least
   std::optional<expr::Rational> most;  ///< at most; none: for ever, if nobody interrupts it
   bool ends = false;                   ///< some motion cannot be interrupted, so that it has to end
+  bool chooses = false;  ///< whose controller chooses when, and nobody else has to keep anything meanwhile
 };
 
 /// To show: `formula` has no solution together with `rest`; or, if `satisfiable`, that it has one; or, if

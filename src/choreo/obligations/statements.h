@@ -77,15 +77,22 @@ class Statements {
 void StateContract(Statements& statements, const Instance& instance);
 
 /// That the motions of a step can be kept at every moment, from wherever `facts` and their preconditions let
-/// them begin; `what` names them. Those whose controllers are `proved` keep their contracts anyway.
+/// them begin; `what` names them. States that are not `bridged` begin where they are. Those whose controllers
+/// are `proved` keep their contracts anyway.
 void StateKeeping(Statements& statements, const Node& step, const std::string& what, const Facts& facts,
-                  const std::vector<expr::TermId>& assumptions, const std::set<std::string>& proved);
+                  const std::vector<expr::TermId>& assumptions, const std::set<expr::TermId>& bridged,
+                  const std::set<std::string>& proved);
 
-/// A motion may begin a little beside where its `during` says that it is. The states on the straight line
-/// from where the step begins (facts, assumptions, preconditions) to there, as formulas; empty if every
-/// motion begins where it says.
-std::vector<expr::TermId> BridgeInto(Statements& statements, const Node& step, const Facts& facts,
-                                     std::vector<expr::TermId> assumptions);
+/// A motion may begin a little beside where an equation of its `during` says that it is.
+struct Bridge {
+  std::vector<expr::TermId> states;  ///< formulas: on the straight line from where the step begins to there
+  std::set<expr::TermId> bridged;    ///< the states that have such a way to go
+};
+
+/// Empty if every motion begins where it says, or may be interrupted at once. Only what an equation
+/// determines by what does not move has a bridge.
+Bridge BridgeInto(Statements& statements, const Node& step, const Facts& facts,
+                  std::vector<expr::TermId> assumptions);
 
 /// That something can be sent as a message promises, whenever `known` holds: receivers rely on it.
 void StatePromise(Statements& statements, const Node& message, std::vector<expr::TermId> known);

@@ -66,6 +66,12 @@ void DuringFails(KeepingStart& s, const CurvePiece& piece, std::vector<TermId>& 
     const bool said = std::ranges::find(known, part) != known.end();
     if (!said) fails.push_back(Fails(s, part, when));
   };
+  // At its ends by the choices of that very moment, which may be others than before and behind it.
+  for (const std::optional<Rational>& end : {std::optional(piece.from), piece.to}) {
+    if (!end || !s.switches().any()) continue;
+    const TermId then = s.At(expr::Substitute(s.arena(), s.during(), piece.value), *end);
+    fails.push_back(Fails(s, then, s.At(given, *end)));
+  }
   const TermId during = s.switches().Settled(s.during(), piece.from, piece.to);
   for (const TermId part : s.Parts(Along(s, during, piece.value))) {
     if (!s.Has(part, s.clock()) && steady) {

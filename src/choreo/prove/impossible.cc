@@ -54,7 +54,7 @@ std::optional<KeepingVerdict> DeterminedFails(KeepingStart& s, const Curve& whol
   }
   const TermId given = expr::Substitute(arena, k.given, determined);
   const TermId during = expr::Substitute(arena, s.during(), determined);
-  const Rational until = k.most ? k.least : std::max(k.least, Rational(1));
+  const Rational until = k.most || k.ends ? k.least : std::max(k.least, Rational(1));
   if (const auto at =
           s.Solution(arena.And({s.start(), given, s.Elapsed(until), expr::Complement(arena, during)})))
     return Refuted(s, "`during` or a range forbids the state in which it says that it is", *at, determined);
@@ -65,7 +65,7 @@ std::optional<KeepingVerdict> DeterminedFails(KeepingStart& s, const Curve& whol
   }
   if (const auto at = s.Solution(arena.And(s.start(), arena.Or(BridgeFails(s, curve.front())))))
     return Refuted(s, "it may begin farther than a bridge from where `during` says that it begins", *at,
-                   curve.front().value, Rational(0));
+                   s.begin(), Rational(0));
   return std::nullopt;
 }
 

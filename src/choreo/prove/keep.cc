@@ -33,7 +33,12 @@ class Keeper {
     Determine();
     // The longest time leaves the most room; only what is determined to take less needs less.
     std::vector<Rational> times{k_.most ? *k_.most : std::max(k_.least, Rational(1))};
-    if (k_.most && *k_.most != k_.least && !k_.least.IsZero()) times.push_back(k_.least);
+    if (k_.chooses && k_.most && *k_.most != k_.least && !k_.least.IsZero()) times.push_back(k_.least);
+    if (!k_.most && k_.ends && !k_.chooses)
+      return {Verdict::kUnknown,
+              "nothing says how long it may take, and others have to keep on meanwhile",
+              {},
+              {}};
     for (const Rational& time : times) {
       time_ = time;
       // States that nothing forces to move had better stay.
@@ -67,9 +72,9 @@ class Keeper {
 
   // `during` may say where a state is, as a function of time and of what others do.
   void Determine() {
-    std::vector<TermId> changing = k_.moving;
-    for (const TermId v : robot::VariablesOf(arena_, {k_.given, s_.during(), s_.clock()}))
-      changing.push_back(v);
+    changing_ = k_.moving;
+    for (const TermId v : robot::VariablesOf(arena_, {k_.given, s_.during(), k_.post, s_.clock()}))
+      changing_.push_back(v);
     for (bool grown = true; grown;) {
       grown = false;
       for (const TermId part : s_.Parts(s_.during())) {
@@ -77,7 +82,7 @@ class Keeper {
           auto value = SolveFor(arena_, part, v);
           if (!value) continue;
           value = expr::Substitute(arena_, *value, determined_);
-          if (HasFree(*value) || !s_.switches().IsContinuousBetween(*value, changing)) continue;
+          if (HasFree(*value) || !s_.switches().IsContinuousBetween(*value, changing_)) continue;
           determined_[v] = *value;
           std::erase(free_, v);
           grown = true;
@@ -96,7 +101,7 @@ class Keeper {
       for (const TermId part : s_.Parts(post)) {
         for (const TermId v : std::vector<TermId>(open)) {
           const auto value = SolveFor(arena_, part, v);
-          if (!value || HasFree(*value)) continue;
+          if (!value || HasFree(*value) || !IsContinuous(arena_, *value, changing_)) continue;
           end_[v] = *value;
           std::erase(open, v);
           break;
@@ -230,6 +235,7 @@ class Keeper {
   KeepingStart& s_;
   Arena& arena_;
   const Keeping& k_;
+  std::vector<TermId> changing_;   // all that may change meanwhile
   std::vector<TermId> free_;       // states that no equation determines
   Substitution determined_, end_;  // the others, over the clock; where free ones may end
   Rational time_;                  // that the curve takes

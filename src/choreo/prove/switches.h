@@ -15,6 +15,7 @@ class Switches {
 
   /// Does the term change over continuously between two neighbouring moments?
   bool IsContinuousBetween(expr::TermId term, const std::vector<expr::TermId>& changing);
+  bool any() const { return !plain_.empty(); }
   /// The formula or term between two neighbouring moments, with its choices made: on both closed ends, too,
   /// if what it chooses is equal there.
   expr::TermId Settled(expr::TermId term, const expr::Rational& from,
