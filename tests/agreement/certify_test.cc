@@ -176,6 +176,29 @@ TEST(Certify, IsNotFooled) {
   // A square may vanish, and a difference of squares does not vanish summand by summand.
   EXPECT_TRUE(bad("(assert (<= (* x x) 0.0))(squares (<= (* x x) 0.0))(contradiction)"));
   EXPECT_TRUE(bad("(assert (<= (- (* x x) (* y y)) 0.0))(squares (<= (- (* x x) (* y y)) 0.0))"));
+  EXPECT_TRUE(
+      bad("(assert (<= (+ (* (- 2.0) x x) (* y y)) 0.0))(squares (<= (+ (* (- 2.0) x x) (* y y)) 0.0))"));
+  // A sum that is not zero is no identity.
+  EXPECT_TRUE(bad("(assert (<= x 1.0))(fact (<= x 1.0))(identity 1.0 x 1.0)(search (x) \".\")"));
+  // A window of less than a turn, or beside bounds of the variable itself, leaves angles out.
+  EXPECT_TRUE(bad("(assert (>= (sin x) 0.0))(period x 0.0 6.0)(contradiction)"));
+  EXPECT_TRUE(bad(
+      "(assert (>= (sin x) 0.5))(assert (>= x 100.0))(period x 0.0 7.0)(fact (>= x 100.0))(contradiction)"));
+  EXPECT_TRUE(
+      bad("(assert (>= (sin x) 0.5))(assert (>= x 100.0))(assert (<= x 101.0))(period x 0.0 "
+          "7.0)(contradiction)"));
+  // A root is never negative, so a negative lower bound says nothing of its argument.
+  EXPECT_TRUE(bad("(assert (>= (sqrt x) (- 3.0)))(assert (<= x 1.0))(contradiction)"));
+  // Of two alternatives that may both hold, neither is demanded; a choice has both values.
+  EXPECT_TRUE(
+      bad("(assert (or (<= x 0.0) (>= x 1.0)))(assert (<= x 5.0))(fact (<= x 5.0))"
+          "(fact (or (>= x 1.0) (<= x 0.0)))(fact (or (<= x 0.0) (>= x 1.0)))(search (x) \".\")"));
+  EXPECT_TRUE(
+      bad("(assert (= y (ite (<= x 0.0) 1.0 2.0)))(assert (>= y 1.5))(fact (= y (ite (<= x 0.0) 1.0 2.0)))"
+          "(fact (>= y 1.5))(search (x y) \".\")"));
+  EXPECT_TRUE(
+      bad("(assert (= y (ite (<= x 0.0) 1.0 2.0)))(assert (<= y 1.5))(fact (= y (ite (<= x 0.0) 1.0 2.0)))"
+          "(fact (<= y 1.5))(search (x y) \".\")"));
 }
 
 // What is too large is rejected, in little time and memory.
