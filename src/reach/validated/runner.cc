@@ -317,8 +317,8 @@ void Runner::Keep(const Stage& stage, double from, double to, const interval::Bo
   attempt_.leaf.tube.push_back({from, to, std::move(box)});
 }
 
-// Are the errors out of proportion? Then what follows is not worth its time: smaller parts will be. What inputs do
-// is the same in smaller parts: beside it, errors are compared with all of the initial set.
+// Are the errors out of proportion? Then what follows is not worth its time: smaller parts will be. What
+// inputs do is the same in smaller parts: beside it, errors are compared with all of the initial set.
 bool Runner::TooWide(const Flow& flow, double share) const {
   if (monomials_->symbols() == 0) return false;
   const bool driven = !stages_.problem().inputs.empty();

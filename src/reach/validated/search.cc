@@ -76,7 +76,8 @@ std::optional<Refuted> Search::Try(std::vector<double> start) {
       course.inputs.push_back(std::move(values));
     }
   }
-  // The first miss may be so small that nothing can be made of it: another may follow, of this claim or of another.
+  // The first miss may be so small that nothing can be made of it: another may follow, of this claim or of
+  // another.
   double margin = 0;
   for (const double next : {1e-6, 1e-3, 0.0}) {
     Violation worst = trajectories_.Worst(course, horizon / 400, margin, 1e-10, stop_);
