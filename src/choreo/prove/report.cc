@@ -128,7 +128,7 @@ std::vector<std::string> StateOf(const Graph& graph, const Witness& witness) {
   std::vector<std::string> state;
   const auto show = [&](const std::string& owner, const robot::Variable& v) {
     const auto it = witness.values.find(v.term);
-    if (it == witness.values.end()) return;
+    if (it == witness.values.end() || !std::isfinite(it->second)) return;
     state.push_back(fmt::format("{}.{} = {}", owner, v.name.text, Quantity(it->second, v.dimension)));
   };
   for (const robot::Body& body : graph.world->bodies) {
