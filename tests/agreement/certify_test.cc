@@ -187,6 +187,19 @@ TEST(Certify, IsNotFooled) {
   EXPECT_TRUE(
       bad("(assert (>= (sin x) 0.5))(assert (>= x 100.0))(assert (<= x 101.0))(period x 0.0 "
           "7.0)(contradiction)"));
+  EXPECT_TRUE(
+      bad("(assert (<= (sin x) (- 0.999)))(period x (- 1.5) 4.6)(fact (<= (sin x) (- 0.999)))"
+          "(fact (<= (- 1.5) x))(fact (<= x 4.6))(search (x) \"0 1.5 . .\")"));
+  EXPECT_TRUE(bad("(assert (>= x 0.0))(fact (>= x 0.0))(identity 1.0 x 1.0)(search (x) \".\")"));
+  EXPECT_TRUE(
+      bad("(assert (= x 1.0))(assert (= y 1.0))(assert (<= (+ (* (- 2.0) (* x x)) (* y y)) 0.0))"
+          "(squares (<= (+ (* (- 2.0) (* x x)) (* y y)) 0.0))(contradiction)"));
+  EXPECT_TRUE(
+      bad("(assert (or (<= x 0.0) (>= x 1.0)))(assert (<= x 0.5))(fact (or (<= x 0.0) (>= x 1.0)))"
+          "(fact (<= x 0.5))(search (x) \".\")"));
+  EXPECT_TRUE(
+      bad("(assert (or (<= x 0.0) (>= x 1.0)))(assert (>= x 0.5))(fact (or (<= x 0.0) (>= x 1.0)))"
+          "(fact (>= x 0.5))(search (x) \".\")"));
   // A root is never negative, so a negative lower bound says nothing of its argument.
   EXPECT_TRUE(bad("(assert (>= (sqrt x) (- 3.0)))(assert (<= x 1.0))(contradiction)"));
   // Of two alternatives that may both hold, neither is demanded; a choice has both values.
