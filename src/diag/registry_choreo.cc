@@ -140,9 +140,9 @@ constexpr KindInfo kTable[] = {
      "A recursion has a message or a motion on every way back to its beginning.",
      TEAM "choreography C in W {\n  rec X { continue X }\n}\n", "check"},
     {Kind::kChoreoZeno, "choreo-zeno", Severity::kError, "a loop in which no time has to pass",
-     "Messages take no time, and a motion may end as soon as its least duration is over: a loop whose "
-     "motions may "
-     "all end at once\nmay run for ever at one instant, and nothing behind that instant would be looked at.",
+     "Messages take no time, and a motion may end as soon as its least duration is over: a loop whose\n"
+     "motions may all end at once may run for ever at one instant, and nothing behind that instant\n"
+     "would be looked at.",
      TEAM "choreography C in W {\n  loop { a -> b: ping() b -> a: pong() }\n}\n", "check"},
     {Kind::kChoreoUnmergeable, "choreo-unmergeable", Severity::kError, "a robot that cannot know what to do",
      "Alternatives that look alike to a robot must ask the same of it. Either it learns of the choice, by a "

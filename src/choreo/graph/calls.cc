@@ -6,7 +6,6 @@
 #include <cctype>
 #include <set>
 
-#include "expr/substitute.h"
 #include "lang/expr_printer.h"
 
 namespace rondo::choreo {
@@ -176,10 +175,6 @@ std::optional<size_t> Calls::Resolve(RobotId robot, const MotionCall& call, cons
   if (!duration) return std::nullopt;
   instance.duration = *duration;
   instance.contract = robot::ContractOf(body, *motion, names, evaluator_);
-  // When it begins, no time has passed.
-  expr::Arena& arena = evaluator_.arena();
-  instance.contract.pre = expr::Substitute(
-      arena, instance.contract.pre, {{graph_.world->clock, arena.Number(arena.Real(), expr::Rational(0))}});
   instance.control = robot::ControlOf(body, *motion, names, evaluator_);
   instance.text = TextOf(*motion, call);
   if (evaluator_.diagnostics().errors() > errors) return std::nullopt;

@@ -207,19 +207,24 @@ class Flow {
 
 }  // namespace
 
-std::set<TermId> ChangingIn(const Graph& graph, const Node& motion) {
-  std::set<TermId> changing;
-  for (const robot::Body& body : graph.world->bodies) {
-    for (const auto& v : body.inputs) changing.insert(v.term);
-  }
-  for (const auto& v : graph.world->environment) changing.insert(v.term);
+std::set<TermId> ModifiedIn(const Graph& graph, const Node& motion) {
+  std::set<TermId> modified;
   for (const Part& p : motion.parts) {
     const Instance& instance = graph.instances[p.instance];
     const auto& states = graph.BodyOf(p.robot).states;
     for (size_t i = 0; i < states.size(); ++i) {
-      if (instance.contract.modifies[i]) changing.insert(states[i].term);
+      if (instance.contract.modifies[i]) modified.insert(states[i].term);
     }
   }
+  return modified;
+}
+
+std::set<TermId> ChangingIn(const Graph& graph, const Node& motion) {
+  std::set<TermId> changing = ModifiedIn(graph, motion);
+  for (const robot::Body& body : graph.world->bodies) {
+    for (const auto& v : body.inputs) changing.insert(v.term);
+  }
+  for (const auto& v : graph.world->environment) changing.insert(v.term);
   return changing;
 }
 
@@ -238,6 +243,23 @@ Conjunction Conjuncts(const Arena& arena, TermId formula) {
   if (arena.op(formula) != expr::Op::kAnd) return {formula};
   const auto args = arena.args(formula);
   return {args.begin(), args.end()};
+}
+
+std::vector<TermId> TakeConnected(std::set<TermId>& variables, std::vector<TermId>& parts,
+                                  const std::function<const std::set<TermId>&(TermId)>& variables_of) {
+  std::vector<TermId> taken;
+  for (bool grown = true; grown;) {
+    grown = false;
+    std::erase_if(parts, [&](TermId part) {
+      const std::set<TermId>& own = variables_of(part);
+      if (!own.empty() && std::ranges::none_of(own, [&](TermId v) { return variables.contains(v); }))
+        return false;
+      taken.push_back(part);
+      variables.insert(own.begin(), own.end());
+      return grown = true;
+    });
+  }
+  return taken;
 }
 
 TermId ToTerm(Arena& arena, const Facts& facts) {

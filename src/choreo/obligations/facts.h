@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <set>
 #include <vector>
 
@@ -22,11 +23,20 @@ std::vector<Facts> FactsOf(const Graph& graph, expr::Arena& arena);
 /// The conjuncts of a formula.
 Conjunction Conjuncts(const expr::Arena& arena, expr::TermId formula);
 
+/// Takes those of `parts` that mention one of these variables, or one that such a part mentions, and so on,
+/// or none at all; `variables` grows accordingly.
+std::vector<expr::TermId> TakeConnected(
+    std::set<expr::TermId>& variables, std::vector<expr::TermId>& parts,
+    const std::function<const std::set<expr::TermId>&(expr::TermId)>& variables_of);
+
 /// The disjunction as a term; false if there is none.
 expr::TermId ToTerm(expr::Arena& arena, const Facts& facts);
 
 /// How long a step takes: at least as long as any of its motions has to, at most as long as each of them can.
 Duration StepOf(const Node& motion);
+
+/// The states that the motions of a step modify.
+std::set<expr::TermId> ModifiedIn(const Graph& graph, const Node& motion);
 
 /// What may change while a step goes on: what its motions modify, inputs, and the environment.
 std::set<expr::TermId> ChangingIn(const Graph& graph, const Node& motion);

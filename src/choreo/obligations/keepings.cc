@@ -1,6 +1,5 @@
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <string>
 
 #include "choreo/obligations/facts.h"
 #include "choreo/obligations/solve_for.h"
@@ -25,13 +24,6 @@ Rational BridgeOf(lang::Dimension dimension) {
 TermId StartOf(expr::Arena& arena, TermId state) {
   const std::string name = "start of " + arena.symbol(arena.symbol_of(state)).name;
   return arena.Variable(arena.Declare(name, {}, arena.Real()));
-}
-
-TermId Range(expr::Arena& arena, const robot::Variable& v) {
-  std::vector<TermId> bounds;
-  if (v.least) bounds.push_back(arena.Le(*v.least, v.term));
-  if (v.most) bounds.push_back(arena.Le(v.term, *v.most));
-  return arena.And(bounds);
 }
 
 // One formula that says all of what is asked, each part with a name of its own, so that different questions
@@ -64,15 +56,8 @@ Bridge BridgeInto(Statements& s, const Node& n, const Facts& facts, std::vector<
   // Who may be interrupted at once would never have got there.
   if (StepOf(n).least.IsZero()) return {};
   expr::Arena& arena = s.arena();
-  std::set<TermId> moving;
-  for (const Part& p : n.parts) {
-    const Instance& i = s.graph().instances[p.instance];
-    const auto& states = s.graph().BodyOf(p.robot).states;
-    for (size_t k = 0; k < states.size(); ++k) {
-      if (i.contract.modifies[k]) moving.insert(states[k].term);
-    }
-    known.push_back(i.contract.pre);
-  }
+  const std::set<TermId> moving = ModifiedIn(s.graph(), n);
+  for (const Part& p : n.parts) known.push_back(s.graph().instances[p.instance].contract.pre);
   const Conjunction always = Conjuncts(arena, arena.And(known));
   known.push_back(ToTerm(arena, facts));
   // Most motions begin exactly where the one before has ended.
@@ -152,7 +137,7 @@ void StateKeeping(Statements& s, const Node& n, const std::string& what, const F
       keeping.moving.push_back(v.term);
       keeping.before.push_back(before(v.term));
       keeping.bridges.push_back(bridged.contains(v.term) ? BridgeOf(v.dimension) : Rational(0));
-      during.push_back(Range(arena, v));
+      during.push_back(s.RangeOf(v.term));
       ranges.merge(Conjuncts(arena, during.back()));
     }
   }

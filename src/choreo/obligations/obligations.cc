@@ -174,19 +174,24 @@ class Builder {
            Known(id, context), ObligationKind::kReached);
     const Bridge bridge = BridgeInto(s_, n, facts_[id.index()], context.assumptions);
     StateKeeping(s_, n, TextOf(n), facts_[id.index()], context.assumptions, bridge.bridged, proved_);
-    Occupy(n, during, context, "");
+    Occupy(n, during, context);
     if (bridge.bridged.empty()) return;
     s_.bridge = true;
-    Occupy(n, bridge.states, context, " (before it is where `during` begins)");
+    Occupy(n, bridge.states, context);
     s_.bridge = false;
   }
 
-  // What the robots of a step do in space while these formulas hold; `when` that is, for messages.
-  void Occupy(const Node& n, const std::vector<TermId>& during, const Context& context,
-              const std::string& when) {
+  // "`cart: Move(1 m)`", and when, if it is not yet where it says
+  std::string Who(const Part& p) const {
+    return fmt::format("`{}: {}`{}", NameOf(p.robot), graph_.instances[p.instance].text,
+                       s_.bridge ? " (before it is where `during` begins)" : "");
+  }
+
+  // What the robots of a step do in space while these formulas hold.
+  void Occupy(const Node& n, const std::vector<TermId>& during, const Context& context) {
     for (const Part& p : n.parts) {
       s_.instances = {p.instance};
-      Space(p, during, context, when);
+      Space(p, during, context);
     }
     s_.instances.clear();
     for (const Part& p : n.parts) s_.instances.push_back(p.instance);
@@ -199,10 +204,7 @@ class Builder {
     for (const Part& p : n.parts) {
       const Instance& i = graph_.instances[p.instance];
       if (!i.contract.footprint) continue;  // said where it is missing
-      members.push_back({fmt::format("`{}: {}`{}", NameOf(p.robot), i.text, when),
-                         &*i.contract.footprint,
-                         {},
-                         {p.instance}});
+      members.push_back({Who(p), &*i.contract.footprint, {}, {p.instance}});
     }
     StateApart(s_, ObligationKind::kCollision, n.parts[0].span, members, during);
   }
@@ -219,9 +221,8 @@ class Builder {
 
   // How one robot begins a step.
   void Begins(NodeId id, const Part& p, const Context& context) {
-    const Instance& instance = graph_.instances[p.instance];
-    const robot::Contract& c = instance.contract;
-    const std::string who = fmt::format("`{}: {}`", NameOf(p.robot), instance.text);
+    const robot::Contract& c = graph_.instances[p.instance].contract;
+    const std::string who = Who(p);
     auto formulas = Known(id, context);
     formulas.push_back(s_.Fails(c.pre));
     if (c.pre != arena_.True())
@@ -236,11 +237,9 @@ class Builder {
   }
 
   // Body, obstacles and region of one robot in a step.
-  void Space(const Part& p, const std::vector<TermId>& during, const Context& context,
-             const std::string& when) {
-    const Instance& instance = graph_.instances[p.instance];
-    const robot::Contract& c = instance.contract;
-    const std::string who = fmt::format("`{}: {}`{}", NameOf(p.robot), instance.text, when);
+  void Space(const Part& p, const std::vector<TermId>& during, const Context& context) {
+    const robot::Contract& c = graph_.instances[p.instance].contract;
+    const std::string who = Who(p);
     const Shape* body = BodyOf(p.robot);
     if (body == nullptr || !c.footprint) return;
     const TermId state = arena_.And(during);

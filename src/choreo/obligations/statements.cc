@@ -11,15 +11,6 @@ namespace rondo::choreo {
 using expr::Rational;
 using expr::TermId;
 
-namespace {
-
-std::vector<NodeId> Joined(std::vector<NodeId> nodes, NodeId node) {
-  if (std::ranges::find(nodes, node) == nodes.end()) nodes.push_back(node);
-  return nodes;
-}
-
-}  // namespace
-
 Claim Noun(const std::string& title) { return {title, title + " may not hold"}; }
 Claim State(const std::string& state) { return {"a state " + state, "there is no state " + state}; }
 
@@ -107,7 +98,8 @@ void Statements::Add(Obligation obligation) {
     same.bridge = same.bridge && bridge;
     std::vector<NodeId>& nodes = same.nodes;
     // What is about no node in particular stays so.
-    if (!nodes.empty()) nodes = node.valid() ? Joined(nodes, node) : std::vector<NodeId>();
+    if (!node.valid()) nodes.clear();
+    if (!nodes.empty() && std::ranges::find(nodes, node) == nodes.end()) nodes.push_back(node);
     return;
   }
   result_.all.push_back(std::move(obligation));
@@ -127,25 +119,17 @@ TermId Statements::Related(const std::vector<TermId>& roots, std::vector<TermId>
   }
   std::set<TermId> variables;
   for (const TermId root : roots) variables.insert(VariablesOf(root).begin(), VariablesOf(root).end());
-  std::vector<TermId> related;
-  for (bool grown = true; grown;) {
-    grown = false;
-    std::erase_if(open, [&](TermId part) {
-      const std::set<TermId>& own = VariablesOf(part);
-      if (!own.empty() && std::ranges::none_of(own, [&](TermId v) { return variables.contains(v); }))
-        return false;
-      related.push_back(part);
-      variables.insert(own.begin(), own.end());
-      return grown = true;
-    });
-  }
+  std::vector<TermId> related = TakeConnected(
+      variables, open, [this](TermId part) -> const std::set<TermId>& { return VariablesOf(part); });
   formulas = std::move(open);
   std::ranges::sort(related);
-  for (const TermId v : variables) {
-    const auto it = ranges_.find(v);
-    if (it != ranges_.end()) related.insert(related.end(), it->second.begin(), it->second.end());
-  }
+  for (const TermId v : variables) related.push_back(RangeOf(v));
   return arena_.And(related);
+}
+
+TermId Statements::RangeOf(TermId variable) const {
+  const auto it = ranges_.find(variable);
+  return it == ranges_.end() ? arena_.True() : arena_.And(it->second);
 }
 
 TermId Statements::Fails(TermId formula) const { return expr::Complement(arena_, formula); }

@@ -29,7 +29,7 @@ class Statements {
 
   NodeId node;
   std::vector<size_t> instances;
-  bool bridge = false;
+  bool bridge = false;  ///< about the way to where `during` begins
 
   /// The last formula has no solution together with the others. Those that share no variable with it,
   /// directly or over others, become the `rest`.
@@ -52,6 +52,8 @@ class Statements {
   /// Takes out of `formulas` what is about the variables of `roots`, or about variables that such formulas
   /// mention, and so on; with the ranges of all these variables.
   expr::TermId Related(const std::vector<expr::TermId>& roots, std::vector<expr::TermId>& formulas);
+  /// That a state, an input or a part of the environment is in its declared range.
+  expr::TermId RangeOf(expr::TermId variable) const;
   /// Where a formula is not true; where none of several is.
   expr::TermId Fails(expr::TermId formula) const;
   expr::TermId NoneOf(const std::vector<expr::TermId>& formulas) const;

@@ -1,8 +1,10 @@
 #include "choreo/prove/curve_proof.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
+#include "choreo/obligations/facts.h"
 #include "expr/defined.h"
 #include "expr/polynomial.h"
 
@@ -33,18 +35,10 @@ TermId Along(KeepingStart& s, TermId formula, const Substitution& value) {
 // What is known of the variables of a formula, directly or over others.
 TermId Related(KeepingStart& s, TermId formula, std::vector<TermId> known) {
   std::set<TermId> variables = robot::VariablesOf(s.arena(), {formula});
-  std::vector<TermId> related;
-  for (bool grown = true; grown;) {
-    grown = false;
-    std::erase_if(known, [&](TermId part) {
-      const auto own = robot::VariablesOf(s.arena(), {part});
-      if (std::ranges::none_of(own, [&](TermId v) { return variables.contains(v); })) return false;
-      related.push_back(part);
-      variables.insert(own.begin(), own.end());
-      return grown = true;
-    });
-  }
-  return s.arena().And(related);
+  std::map<TermId, std::set<TermId>> own;
+  for (const TermId part : known) own.emplace(part, robot::VariablesOf(s.arena(), {part}));
+  return s.arena().And(
+      TakeConnected(variables, known, [&](TermId part) -> const std::set<TermId>& { return own.at(part); }));
 }
 
 TermId Fails(KeepingStart& s, TermId part, TermId given) {
@@ -58,10 +52,10 @@ TermId Within(KeepingStart& s, const CurvePiece& piece) {
 }
 
 // Where `during` fails in one piece of the curve.
-void DuringFails(KeepingStart& s, const CurvePiece& piece, std::vector<TermId>& fails) {
+void DuringFails(KeepingStart& s, const CurvePiece& piece, const std::vector<TermId>& known,
+                 std::vector<TermId>& fails) {
   const TermId given = expr::Substitute(s.arena(), s.keeping().given, piece.value);
   const bool steady = !s.Has(given, s.clock());
-  const std::vector<TermId> known = s.Parts(s.start());
   const auto add = [&](TermId part, TermId when) {
     const bool said = std::ranges::find(known, part) != known.end();
     if (!said) fails.push_back(Fails(s, part, when));
@@ -92,10 +86,10 @@ bool Keeps(KeepingStart& s, const Curve& whole) {
   const Curve curve = s.switches().Split(whole);
   std::vector<TermId> fails = BridgeFails(s, curve.front());
   for (size_t i = 1; i < curve.size(); ++i) fails.push_back(Jumps(s, curve[i - 1], curve[i]));
-  for (const CurvePiece& piece : curve) DuringFails(s, piece, fails);
+  const std::vector<TermId> known = s.Parts(s.start());
+  for (const CurvePiece& piece : curve) DuringFails(s, piece, known, fails);
   fails.push_back(PostFails(s, curve));
   // One by one: most are plain, and what is left is about few variables.
-  const std::vector<TermId> known = s.Parts(s.start());
   return std::ranges::all_of(fails, [&](TermId fail) {
     return fail == s.arena().False() || s.Refutes(s.arena().And(Related(s, fail, known), fail));
   });

@@ -179,11 +179,7 @@ class Deciding {
     decision_.reason = std::move(kept.why);
     if (stop_.StopRequested() && kept.verdict == Verdict::kUnknown) decision_.reason = "out of time";
     decision_.certificates = std::move(kept.certificates);
-    NameVariables();
-    for (const auto& [original, own] : names_) {
-      const auto it = kept.values.find(own);
-      if (it != kept.values.end()) decision_.witness.values.emplace(original, it->second);
-    }
+    SetWitness(kept.values, true);
   }
 
   void HasSolution() {

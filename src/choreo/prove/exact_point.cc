@@ -77,18 +77,17 @@ class Guess {
       }
     }
     const TermId v = Plainest(variables);
-    const auto at = near_.find(v);
-    if (at == near_.end() || !std::isfinite(at->second) || std::fabs(at->second) > 1e6) return false;
-    for (const Rational& r : CandidatesNear(at->second)) {
+    if (!v.valid()) return false;
+    for (const Rational& r : CandidatesNear(near_.at(v))) {
       if (With(formula, v, arena_.Number(arena_.Real(), r))) return true;
     }
     return false;
   }
 
   // The variable whose value is most likely to be guessed: near a number of the formula, or near a simple
-  // fraction.
+  // fraction. None if it is not known where any of them lies.
   TermId Plainest(const std::set<TermId>& variables) const {
-    TermId best = *variables.begin();
+    TermId best;
     size_t least = SIZE_MAX;
     for (const TermId v : variables) {
       const auto at = near_.find(v);

@@ -42,9 +42,11 @@ class Keeper {
     for (const Rational& time : times) {
       time_ = time;
       // States that nothing forces to move had better stay.
+      std::optional<Substitution> tried;
       for (const bool stay : {true, false}) {
-        if (Ends(stay) && Keeps(s_, Straight())) return Proved();
-        if (free_.empty()) break;
+        if (!Ends(stay) || tried == end_) continue;
+        if (Keeps(s_, Straight())) return Proved();
+        tried = end_;
       }
     }
     time_ = times.front();

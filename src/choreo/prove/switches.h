@@ -16,8 +16,8 @@ class Switches {
   /// Does the term change over continuously between two neighbouring moments?
   bool IsContinuousBetween(expr::TermId term, const std::vector<expr::TermId>& changing);
   bool any() const { return !plain_.empty(); }
-  /// The formula or term between two neighbouring moments, with its choices made: on both closed ends, too,
-  /// if what it chooses is equal there.
+  /// The formula or term between two neighbouring moments, with its choices made; not at these moments, at
+  /// which it may choose otherwise.
   expr::TermId Settled(expr::TermId term, const expr::Rational& from,
                        const std::optional<expr::Rational>& to);
   /// The same curve in pieces without such moments inside.

@@ -92,6 +92,8 @@ Contract ContractOf(const Body& body, const MotionDef& motion, const Scope& scop
   Contract contract;
   contract.footprint = body.body;
   contract.modifies.resize(body.states.size());
+  Scope begins{&scope, {}};  // no time has passed
+  begins.names.emplace("clock", Quantity(arena.Number(arena.Real(), expr::Rational(0)), kTime));
   for (const Clause& clause : motion.clauses) {
     const std::string& word = clause.keyword.text;
     if (word == "footprint") {
@@ -109,7 +111,7 @@ Contract ContractOf(const Body& body, const MotionDef& motion, const Scope& scop
       }
     }
     if (!clause.value.valid()) continue;
-    const TermId formula = e.Formula(clause.value, scope, "a formula");
+    const TermId formula = e.Formula(clause.value, word == "pre" ? begins : scope, "a formula");
     (word == "pre" ? pre : word == "assume" ? assume : word == "during" ? during : post).push_back(formula);
   }
   contract.pre = arena.And(pre);

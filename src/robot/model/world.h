@@ -102,7 +102,7 @@ void CheckRobot(const RobotDef& type, Evaluator& evaluator);
 Scope MotionScope(const Body& body, const MotionDef& motion, const std::vector<Value>& args,
                   const std::vector<diag::Span>& spans, Evaluator& evaluator);
 
-/// The contract under such names.
+/// The contract under such names. In `pre`, the clock is 0.
 Contract ContractOf(const Body& body, const MotionDef& motion, const Scope& scope, Evaluator& evaluator);
 
 /// The controller of a motion: its own, or that of the robot; nothing if neither has one.
