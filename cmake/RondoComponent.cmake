@@ -1,9 +1,10 @@
-# One component = one folder under src/ = one static library = one namespace.
+# One component = one folder under src/ = one static library.
 #
 #   rondo_component(koord/check DEPS base diag koord/syntax LIBS fmt::fmt)
 #
-# Every *.cc beside the header is compiled in; every *_test.cc becomes part of the component's test binary. DEPS is
-# the layer graph: it is written to layers.txt, and the test `layers` fails on an include that it does not allow.
+# Every *.cc of the folder is compiled in; every *_test.cc becomes part of the component's test binary. DEPS (and
+# TEST_DEPS, for the tests) is the layer graph: it is written to layers.txt, and the test `layers` fails on an include
+# that it does not allow, and on an edge that no include needs.
 
 set_property(GLOBAL PROPERTY RONDO_GRAPH "")
 
@@ -23,7 +24,7 @@ function(rondo_precompile target)
 endfunction()
 
 function(rondo_component component)
-  cmake_parse_arguments(ARG "" "" "DEPS;LIBS;PUBLIC_LIBS;TEST_LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DEPS;TEST_DEPS;LIBS;PUBLIC_LIBS;TEST_LIBS" ${ARGN})
   set(dir ${PROJECT_SOURCE_DIR}/src/${component})
   file(GLOB sources CONFIGURE_DEPENDS ${dir}/*.cc)
   file(GLOB tests CONFIGURE_DEPENDS ${dir}/*_test.cc)
@@ -47,10 +48,15 @@ function(rondo_component component)
     target_link_libraries(${target} ${scope} ${dep_target})
   endforeach()
   list(JOIN ARG_DEPS "," deps)
-  set_property(GLOBAL APPEND PROPERTY RONDO_GRAPH "${component}:${deps}")
+  list(JOIN ARG_TEST_DEPS "," test_deps)
+  set_property(GLOBAL APPEND PROPERTY RONDO_GRAPH "${component}:${deps}:${test_deps}")
   if(RONDO_TESTS AND tests)
     add_executable(${target}_test ${tests})
     target_link_libraries(${target}_test PRIVATE ${target} ${ARG_TEST_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
+    foreach(dep IN LISTS ARG_TEST_DEPS)
+      rondo_target_name(${dep} dep_target)
+      target_link_libraries(${target}_test PRIVATE ${dep_target})
+    endforeach()
     rondo_precompile(${target}_test)
     gtest_discover_tests(${target}_test TEST_PREFIX "${component}." DISCOVERY_MODE PRE_TEST
       WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})

@@ -11,6 +11,8 @@ enum class Severity : uint8_t { kError, kWarning, kNote };
 /// Every kind of diagnostic that Rondo reports. The registry holds its id, explanation and minimal example; a
 /// golden case under testdata/ shows each one.
 enum class Kind : uint8_t {
+  // Files.
+  kFileUnreadable,
   // Reading any of the languages.
   kSyntaxUnexpected,
   kSyntaxIndentation,

@@ -11,9 +11,9 @@ constexpr size_t kKinds = static_cast<size_t>(Kind::kCount_);
 
 std::array<KindInfo, kKinds> BuildTable() {
   std::array<KindInfo, kKinds> table{};
-  for (const auto family : {SyntaxKinds(), SmtKinds(), RobotKinds(), ChoreoKinds(), ChoreoProofKinds(),
-                            ProcessKinds(), KoordNameKinds(), KoordTypeKinds(), KoordControlKinds(),
-                            KoordProofKinds(), KoordRunKinds(), ReachKinds()}) {
+  for (const auto family : {FileKinds(), SyntaxKinds(), SmtKinds(), RobotKinds(), ChoreoKinds(),
+                            ChoreoProofKinds(), ProcessKinds(), KoordNameKinds(), KoordTypeKinds(),
+                            KoordControlKinds(), KoordProofKinds(), KoordRunKinds(), ReachKinds()}) {
     for (const KindInfo& info : family) table[static_cast<size_t>(info.kind)] = info;
   }
   for (size_t i = 0; i < kKinds; ++i) CHECK(!table[i].id.empty()) << "no registry entry for kind " << i;

@@ -7,6 +7,7 @@
 /// The registry, one table per family; `registry.cc` joins them and insists that no kind is missing.
 namespace rondo::diag {
 
+std::span<const KindInfo> FileKinds();
 std::span<const KindInfo> SyntaxKinds();
 std::span<const KindInfo> SmtKinds();
 std::span<const KindInfo> RobotKinds();

@@ -17,6 +17,9 @@ std::string RenderText(const SourceSet& sources, const Diagnostic& diagnostic, C
 /// file and positions are absent when the diagnostic is not about one place.
 nlohmann::json RenderJson(const SourceSet& sources, const Diagnostic& diagnostic);
 
+/// All diagnostics, sorted, each as above.
+nlohmann::json RenderJson(const SourceSet& sources, const Diagnostics& diagnostics);
+
 /// {file, line, column, end_line, end_column} of a valid span.
 nlohmann::json SpanJson(const SourceSet& sources, Span span);
 

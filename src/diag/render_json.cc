@@ -37,4 +37,10 @@ nlohmann::json RenderJson(const SourceSet& sources, const Diagnostic& d) {
   return result;
 }
 
+nlohmann::json RenderJson(const SourceSet& sources, const Diagnostics& diagnostics) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Diagnostic& d : diagnostics.Sorted()) list.push_back(RenderJson(sources, d));
+  return list;
+}
+
 }  // namespace rondo::diag

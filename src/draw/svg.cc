@@ -119,9 +119,9 @@ void Svg::Text(double x, double y, std::string_view text, Anchor anchor, double 
 
 std::string Svg::Finish(double width, double height, std::string_view title) const {
   return fmt::format(
-             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 "
-             "{0:.0f} {1:.0f}\" "
-             "font-family=\"sans-serif\" font-size=\"11\">\n<title>{2}</title>\n"
+             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
+             "font-family=\"sans-serif\" font-size=\"11\">\n"
+             "<title>{2}</title>\n"
              "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
              width, height, Escape(title)) +
          body_ + "</svg>\n";

@@ -1,16 +1,17 @@
 #include <nlohmann/json.hpp>
 
 #include "driver/command.h"
-#include "driver/exit_status.h"
-#include "driver/load.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "koord/syntax/format.h"
 #include "koord/syntax/json.h"
+#include "workspace/koord_files.h"
 
 namespace rondo::driver {
 
-void AddAstVerb(CLI::App& app, int& status) {
+using verdict::ExitStatus;
+
+void AddAstVerb(CLI::App& app, ExitStatus& status) {
   struct Options {
     std::string file;
     bool json = false;
@@ -22,11 +23,11 @@ void AddAstVerb(CLI::App& app, int& status) {
             "the syntax tree as JSON; otherwise the canonical text without comments");
   verb.Footer("example: rondo ast --json examples/koord/lineform.koord");
   verb.Run([options, &status] {
-    Session session;
-    const auto program = Load({options->file, {}, false}, session);
+    workspace::Session session;
+    const auto program = workspace::ReadKoord({options->file, {}, false}, session);
     if (!program || session.diagnostics.has_errors()) {
       PrintDiagnostics(session.sources, session.diagnostics);
-      status = kRejected;
+      status = ExitStatus::kRejected;
       return;
     }
     if (options->json) {

@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "contracts/tube_certificate.h"
 #include "driver/command.h"
-#include "driver/exit_status.h"
-#include "driver/interrupt.h"
-#include "driver/load.h"
-#include "driver/script_run.h"
 #include "driver/terminal.h"
-#include "driver/tube_certificate.h"
 #include "driver/verbs.h"
 #include "solve/certify/checker.h"
+#include "solve/script/script_run.h"
+#include "workspace/session.h"
 
 namespace rondo::driver {
+
+using verdict::ExitStatus;
+
 namespace {
 
 struct Options {
@@ -23,19 +24,19 @@ struct Options {
 };
 
 // A certificate of `rondo reach`. What is wrong with it is reported.
-reach::certify::Verdict Tube(const std::string& path, diag::FileId file, Session& session,
-                             const base::StopToken& stop) {
+reach::certify::Acceptance Tube(const std::string& path, diag::FileId file, workspace::Session& session,
+                                const base::StopToken& stop) {
   // No place: such a file is one long line.
   const auto reject = [&](const std::string& message) -> diag::Diagnostic& {
     return session.diagnostics.Report(diag::Kind::kCertificateRejected, {},
                                       fmt::format("`{}`: {}", path, message));
   };
-  const auto tube = ReadTube(session.sources.text(file));
+  const auto tube = contracts::ReadTube(session.sources.text(file));
   if (!tube.ok()) {
     reject(tube.error().message);
     return {};
   }
-  auto verdict = CheckTube(tube.value(), session, stop);
+  auto verdict = contracts::CheckTube(tube.value(), session, stop);
   if (!verdict.ok()) {
     reject(verdict.error().message);
     return {};
@@ -45,28 +46,25 @@ reach::certify::Verdict Tube(const std::string& path, diag::FileId file, Session
   return verdict.value();
 }
 
-int Run(const Options& options) {
-  Session session;
+ExitStatus Run(const Options& options) {
+  workspace::Session session;
   std::vector<std::string> questions;
   if (!options.script.empty()) {
-    const auto file = ReadSource(options.script, session);
-    if (!file) return kRejected;
+    const auto file = workspace::ReadSource(options.script, session);
     lang::smtlib::Script script;
-    lang::smtlib::ReadScript(session.sources, *file, script, session.diagnostics);
-    if (!session.diagnostics.has_errors()) questions = Questions(script);
+    if (file) lang::smtlib::ReadScript(session.sources, *file, script, session.diagnostics);
+    if (!session.diagnostics.has_errors()) questions = solve::script::Questions(script);
   }
   base::StopToken stop;
   const InterruptScope interrupt(stop);
   nlohmann::json list = nlohmann::json::array();
   std::string text;
-  bool readable = true;
   bool stopped = false;
   for (const std::string& path : options.files) {
-    const auto file = ReadSource(path, session);
-    readable = readable && file;
+    const auto file = workspace::ReadSource(path, session);
     if (!file) continue;
     const size_t before = session.diagnostics.errors();
-    if (IsTube(session.sources.text(*file))) {
+    if (contracts::IsTube(session.sources.text(*file))) {
       if (!options.script.empty()) {
         session.diagnostics.Report(diag::Kind::kCertificateRejected, {*file, 0, 1},
                                    "a certificate of a contract is about no script");
@@ -106,21 +104,21 @@ int Run(const Options& options) {
     text += fmt::format("{}: accepted: the {} assertions have no common solution ({} cases, {} boxes)\n",
                         path, tally.assertions, tally.cases, tally.boxes);
   }
-  const bool good = readable && !session.diagnostics.has_errors() && !stopped;
+  const bool good = !session.diagnostics.has_errors() && !stopped;
   if (options.json) {
-    const nlohmann::json diagnostics = DiagnosticsToJson(session.sources, session.diagnostics);
+    const nlohmann::json diagnostics = diag::RenderJson(session.sources, session.diagnostics);
     PrintJson({{"command", "certify"}, {"ok", good}, {"files", list}, {"diagnostics", diagnostics}});
   } else {
     Print(text);
     PrintDiagnostics(session.sources, session.diagnostics);
   }
-  if (stopped && !session.diagnostics.has_errors()) return kUndecided;
-  return good ? kEstablished : kRejected;
+  if (stopped && !session.diagnostics.has_errors()) return ExitStatus::kUndecided;
+  return good ? ExitStatus::kEstablished : ExitStatus::kRejected;
 }
 
 }  // namespace
 
-void AddCertifyVerb(CLI::App& app, int& status) {
+void AddCertifyVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
   Command verb(app, "certify",
                "check certificates: of `rondo solve --cert`, `rondo prove` and `rondo reach`");
@@ -133,10 +131,10 @@ void AddCertifyVerb(CLI::App& app, int& status) {
       "example: rondo solve --cert it.cert examples/smt/rectangles.smt2\n"
       "         rondo certify --of examples/smt/rectangles.smt2 it.cert\n"
       "         rondo reach examples/reach/van_der_pol.rondo --certificates proofs\n"
-      "         rondo certify proofs/*.tube.json\n\n"
-      "The checkers share no code with the searches. That of refutations has normal forms and interval "
-      "arithmetic (MPFR)\nof its own; that of contracts reads them from their files again, and integrates "
-      "in another way.\n"
+      "         rondo certify proofs/*.tube.json\n"
+      "\n"
+      "The checkers share no code with the searches. That of refutations has normal forms and interval arithmetic (MPFR)\n"
+      "of its own; that of contracts reads them from their files again, and integrates in another way.\n"
       "exit status: 0 every certificate is accepted, 1 one is not, 3 interrupted");
   verb.Run([options, &status] { status = Run(*options); });
 }

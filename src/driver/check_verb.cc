@@ -4,14 +4,16 @@
 #include <nlohmann/json.hpp>
 
 #include "driver/command.h"
-#include "driver/exit_status.h"
-#include "driver/load.h"
-#include "driver/motion.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "koord/check/check.h"
+#include "workspace/koord_files.h"
+#include "workspace/module_files.h"
 
 namespace rondo::driver {
+
+using verdict::ExitStatus;
+
 namespace {
 
 struct Options {
@@ -21,47 +23,40 @@ struct Options {
   bool json = false;
 };
 
-int Run(const Options& options) {
-  Session session;
-  bool readable = true;
+ExitStatus Run(const Options& options) {
+  workspace::Session session;
   std::vector<std::vector<std::string>>
       motion;  // by `.rondo` file: what is not one belongs to the one before it
   for (const std::string& file : options.files) {
     const size_t before = session.diagnostics.errors();
-    if (IsMotionFile(file)) {
+    if (workspace::IsModuleFile(file)) {
       if (motion.empty() || std::filesystem::path(file).extension() == ".rondo") motion.emplace_back();
       motion.back().push_back(file);
       continue;
     }
-    const auto program = Load({file, options.spec, true}, session);
-    if (!program) {
-      readable = false;
-      continue;
-    }
-    if (session.diagnostics.errors() == before) koord::Check(*program, session.diagnostics);
+    const auto program = workspace::ReadKoord({file, options.spec, true}, session);
+    if (program && session.diagnostics.errors() == before) koord::Check(*program, session.diagnostics);
   }
-  for (const auto& files : motion) readable = CheckMotion(files, options.admitted, session) && readable;
-  const bool good = readable && !session.diagnostics.has_errors();
+  for (const auto& files : motion) workspace::CheckModule(files, options.admitted, session);
+  const bool good = !session.diagnostics.has_errors();
   if (options.json) {
-    const nlohmann::json list = DiagnosticsToJson(session.sources, session.diagnostics);
+    const nlohmann::json list = diag::RenderJson(session.sources, session.diagnostics);
     PrintJson({{"command", "check"}, {"ok", good}, {"diagnostics", list}});
   } else {
     PrintDiagnostics(session.sources, session.diagnostics);
   }
-  return good ? kEstablished : kRejected;
+  return good ? ExitStatus::kEstablished : ExitStatus::kRejected;
 }
 
 }  // namespace
 
-void AddCheckVerb(CLI::App& app, int& status) {
+void AddCheckVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
   Command verb(app, "check", "report every error and warning of programs and choreographies");
   verb.Option(
           "FILE", options->files,
-          "Koord programs (`NAME.spec` beside one belongs to it); robots and choreographies (`.rondo`), and "
-          "the "
-          "original choreographies (`.chor`) and programs (`ROBOT.rosl`) about the world of a `.rondo` file "
-          "before them")
+          "Koord programs (`NAME.spec` beside one belongs to it); robots and choreographies (`.rondo`), and the original "
+          "choreographies (`.chor`) and programs (`ROBOT.rosl`) about the world of a `.rondo` file before them")
       .Required();
   verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
   verb.Option("--option", options->admitted,

@@ -3,11 +3,13 @@
 #include <CLI/CLI.hpp>
 
 #include "driver/command.h"
-#include "driver/exit_status.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 
 namespace rondo::driver {
+
+using verdict::ExitStatus;
+
 namespace {
 
 std::string Options(const CLI::App& verb) {
@@ -64,13 +66,13 @@ std::string Fish(const CLI::App& app) {
 
 }  // namespace
 
-void AddCompletionVerb(CLI::App& app, int& status) {
+void AddCompletionVerb(CLI::App& app, ExitStatus& status) {
   auto shell = std::make_shared<std::string>();
   Command verb(app, "completion", "print a completion script for a shell");
   verb.Option("SHELL", *shell, "bash, zsh or fish").Required().OneOf({"bash", "zsh", "fish"});
   verb.Footer("example: source <(rondo completion bash)");
   verb.Run([shell, &app, &status] {
-    status = kEstablished;
+    status = ExitStatus::kEstablished;
     if (*shell == "fish") return Print(Fish(app));
     Print((*shell == "zsh" ? "autoload -U +X bashcompinit && bashcompinit\n" : "") + Bash(app));
   });

@@ -3,15 +3,17 @@
 #include <nlohmann/json.hpp>
 
 #include "driver/command.h"
-#include "driver/exit_status.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "lang/suggest.h"
 
 namespace rondo::driver {
+
+using verdict::ExitStatus;
+
 namespace {
 
-int Explain(const std::string& id, bool json) {
+ExitStatus Explain(const std::string& id, bool json) {
   const diag::KindInfo* info = diag::FindKind(id);
   if (info == nullptr) {
     std::vector<std::string> ids;
@@ -20,7 +22,7 @@ int Explain(const std::string& id, bool json) {
     PrintFailure(fmt::format(
         "there is no diagnostic `{}`{}", id,
         near.empty() ? "; `rondo explain` lists them" : fmt::format("; did you mean `{}`?", near)));
-    return kUsage;
+    return ExitStatus::kUsage;
   }
   if (json) {
     PrintJson({{"kind", info->id},
@@ -29,7 +31,7 @@ int Explain(const std::string& id, bool json) {
                {"explanation", info->explanation},
                {"example", info->example},
                {"verb", info->verb}});
-    return kEstablished;
+    return ExitStatus::kEstablished;
   }
   std::string example;
   std::string_view rest = info->example;
@@ -41,12 +43,12 @@ int Explain(const std::string& id, bool json) {
   Print(fmt::format("{} [{}]: {}\n\n{}\n\nFor example, `rondo {}` reports it for\n\n{}",
                     diag::SeverityName(info->severity), info->id, info->summary, info->explanation,
                     info->verb, example));
-  return kEstablished;
+  return ExitStatus::kEstablished;
 }
 
 }  // namespace
 
-void AddExplainVerb(CLI::App& app, int& status) {
+void AddExplainVerb(CLI::App& app, ExitStatus& status) {
   struct Options {
     std::string kind;
     bool json = false;

@@ -5,16 +5,18 @@
 
 #include "base/file.h"
 #include "driver/command.h"
-#include "driver/exit_status.h"
-#include "driver/exploration.h"
-#include "driver/interrupt.h"
-#include "driver/koord_load.h"
-#include "driver/run_file.h"
-#include "driver/run_trace.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
+#include "runs/exploration.h"
+#include "runs/run_file.h"
+#include "runs/run_trace.h"
+#include "workspace/koord_files.h"
+#include "workspace/places.h"
 
 namespace rondo::driver {
+
+using verdict::ExitStatus;
+
 namespace {
 
 using explore::Ending;
@@ -37,7 +39,7 @@ struct Options {
   bool json = false;
 };
 
-const char* Word(const Explored& e, const Options& options) {
+const char* Word(const runs::Explored& e, const Options& options) {
   if (options.walks > 0) return e.broken ? "a run is broken" : "random walks";
   switch (e.search.ending) {
     case Ending::kComplete:
@@ -58,9 +60,11 @@ const char* Word(const Explored& e, const Options& options) {
 std::string Count(uint64_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
 
 // Events and branches that no size reached, if all were explored completely.
-void Coverage(const koord::Model& model, const std::vector<Explored>& all, diag::Diagnostics& diagnostics) {
+void Coverage(const koord::Model& model, const std::vector<runs::Explored>& all,
+              diag::Diagnostics& diagnostics) {
   for (size_t e = 0; e < model.events.size(); ++e) {
-    if (std::any_of(all.begin(), all.end(), [&](const Explored& x) { return x.enabled[e] > 0; })) continue;
+    if (std::any_of(all.begin(), all.end(), [&](const runs::Explored& x) { return x.enabled[e] > 0; }))
+      continue;
     diagnostics
         .Report(diag::Kind::kKoordNeverHappened, model.events[e]->span,
                 fmt::format("event `{}` was never enabled", model.events[e]->name))
@@ -69,7 +73,7 @@ void Coverage(const koord::Model& model, const std::vector<Explored>& all, diag:
   for (size_t b = 0; b < all[0].branch_spans.size(); ++b) {
     const diag::Span span = all[0].branch_spans[b];
     if (span.begin == span.end) continue;
-    if (std::any_of(all.begin(), all.end(), [&](const Explored& x) { return x.branches[b]; })) continue;
+    if (std::any_of(all.begin(), all.end(), [&](const runs::Explored& x) { return x.branches[b]; })) continue;
     const bool otherwise = b > 0 && all[0].branch_spans[b - 1].begin == span.begin;
     diagnostics.Report(diag::Kind::kKoordNeverHappened, span,
                        otherwise ? "the `else` of this condition was never reached"
@@ -77,9 +81,9 @@ void Coverage(const koord::Model& model, const std::vector<Explored>& all, diag:
   }
 }
 
-std::string Table(const std::vector<Explored>& all, const Options& options) {
+std::string Table(const std::vector<runs::Explored>& all, const Options& options) {
   std::string text;
-  for (const Explored& e : all) {
+  for (const runs::Explored& e : all) {
     if (e.unusable) continue;
     const double rate = e.search.seconds > 0 ? static_cast<double>(e.search.states) / e.search.seconds : 0;
     const std::string size =
@@ -99,7 +103,7 @@ std::string Table(const std::vector<Explored>& all, const Options& options) {
   return text;
 }
 
-nlohmann::json ToJson(const Explored& e, const Options& options, const koord::Model& model) {
+nlohmann::json ToJson(const runs::Explored& e, const Options& options, const koord::Model& model) {
   nlohmann::json events = nlohmann::json::object();
   for (size_t i = 0; i < e.enabled.size(); ++i) events[model.events[i]->name] = e.enabled[i];
   return {{"robots", e.robots},
@@ -116,31 +120,30 @@ nlohmann::json ToJson(const Explored& e, const Options& options, const koord::Mo
           {"broken", e.property.empty() ? nlohmann::json(nullptr) : nlohmann::json(e.property)}};
 }
 
-int StatusOf(const std::vector<Explored>& all, const Options& options) {
+ExitStatus StatusOf(const std::vector<runs::Explored>& all, const Options& options) {
   bool undecided = false;
-  for (const Explored& e : all) {
-    if (e.broken || e.unusable) return kRejected;
+  for (const runs::Explored& e : all) {
+    if (e.broken || e.unusable) return ExitStatus::kRejected;
     const bool cut = e.search.ending == Ending::kStates || e.search.ending == Ending::kStopped;
     undecided = undecided || cut || e.stuck || !e.unchecked.empty() ||
                 (options.walks > 0 && e.walked < options.walks);
   }
-  return undecided ? kUndecided : kEstablished;
+  return undecided ? ExitStatus::kUndecided : ExitStatus::kEstablished;
 }
 
-int Run(const Options& options) {
-  Session session;
-  std::vector<Explored> all;
-  const auto loaded = LoadKoord({options.file, options.spec, true}, session);
-  if (!loaded && !session.diagnostics.has_errors()) return kRejected;
+ExitStatus Run(const Options& options) {
+  workspace::Session session;
+  std::vector<runs::Explored> all;
+  const auto loaded = workspace::LoadKoord({options.file, options.spec, true}, session);
   std::vector<size_t> sizes = options.robots;
   if (loaded) {
-    const std::vector<size_t> declared = DeclaredSizes(loaded->model, session.diagnostics);
+    const std::vector<size_t> declared = runs::DeclaredSizes(loaded->model, session.diagnostics);
     if (sizes.empty()) sizes = declared.empty() ? std::vector<size_t>{1, 2, 3} : declared;
   }
   std::sort(sizes.begin(), sizes.end());
   sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
   const bool good = !session.diagnostics.has_errors();
-  ExplorationOptions exploration;
+  runs::ExplorationOptions exploration;
   if (options.depth > 0) exploration.rounds = options.depth;
   exploration.states = options.states;
   exploration.compact = options.compact;
@@ -159,37 +162,38 @@ int Run(const Options& options) {
                               static_cast<double>(p.states) / std::max(p.seconds, 1e-9), p.frontier,
                               p.depth));
       };
-      all.push_back(Explore(loaded->model, n, exploration, session.diagnostics));
+      all.push_back(runs::Explore(loaded->model, n, exploration, session.diagnostics));
       // The first counterexample has the fewest robots; what cannot be run with one size cannot with another.
       if (all.back().broken || all.back().unusable || exploration.stop.cancelled()) break;
     }
   }
-  const bool complete = !all.empty() && std::all_of(all.begin(), all.end(), [&](const Explored& e) {
+  const bool complete = !all.empty() && std::all_of(all.begin(), all.end(), [&](const runs::Explored& e) {
     return options.walks == 0 && !e.unusable && e.search.ending == Ending::kComplete && !e.broken;
   });
   if (complete) Coverage(loaded->model, all, session.diagnostics);
-  const int status = good ? StatusOf(all, options) : kRejected;
+  const ExitStatus status = good ? StatusOf(all, options) : ExitStatus::kRejected;
   std::string saved;
   std::string trouble;
-  for (const Explored& e : all) {
+  for (const runs::Explored& e : all) {
     if (!e.run.is_array() || e.run.empty()) continue;
-    const std::string path = options.save.empty() ? DefaultRunFile(options.file, e.property) : options.save;
-    const RunFile run{options.file, options.spec, e.robots, e.property, "explore", e.run};
-    const auto written = SaveRun(path, run);
+    const std::string path =
+        options.save.empty() ? workspace::DefaultRunFile(options.file, e.property) : options.save;
+    const runs::RunFile run{options.file, options.spec, e.robots, e.property, "explore", e.run};
+    const auto written = runs::SaveRun(path, run);
     (written.ok() ? saved : trouble) = written.ok() ? path : written.error().message;
     if (options.trace.empty()) continue;
-    const auto traced = WriteRunTrace(options.trace, run, session);
+    const auto traced = runs::WriteRunTrace(options.trace, run, session);
     if (!traced.ok()) trouble = traced.error().message;
   }
   if (options.json) {
     nlohmann::json sizes_json = nlohmann::json::array();
-    for (const Explored& e : all) {
+    for (const runs::Explored& e : all) {
       if (!e.unusable) sizes_json.push_back(ToJson(e, options, loaded->model));
     }
     nlohmann::json out{
         {"command", "explore"}, {"file", options.file},
         {"status", status},     {"explored", sizes_json},
-        {"seed", options.seed}, {"diagnostics", DiagnosticsToJson(session.sources, session.diagnostics)}};
+        {"seed", options.seed}, {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}};
     if (!saved.empty()) out["run"] = saved;
     PrintJson(out);
     return status;
@@ -197,9 +201,9 @@ int Run(const Options& options) {
   if (!all.empty() && !all[0].unusable) Print(fmt::format("{}\n{}", options.file, Table(all, options)));
   PrintDiagnostics(session.sources, session.diagnostics);
   std::string text;
-  if (status == kEstablished) {
+  if (status == ExitStatus::kEstablished) {
     std::vector<std::string> done;
-    for (const Explored& e : all) done.push_back(fmt::format("{}", e.robots));
+    for (const runs::Explored& e : all) done.push_back(fmt::format("{}", e.robots));
     const size_t invariants = loaded->model.invariants.size();
     const std::string what = options.walks > 0 ? "simulated at random"
                              : options.depth > 0
@@ -219,7 +223,7 @@ int Run(const Options& options) {
 
 }  // namespace
 
-void AddExploreVerb(CLI::App& app, int& status) {
+void AddExploreVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
   Command verb(app, "explore", "visit every state that a small team can reach");
   verb.Option("FILE", options->file, "a Koord program; `NAME.spec` beside it belongs to it").Required();
@@ -243,11 +247,12 @@ void AddExploreVerb(CLI::App& app, int& status) {
   verb.Option("--trace", options->trace, "write that run as a trace (MCAP), too");
   verb.Flag("--json", options->json, "the result as JSON on standard output");
   verb.Footer(
-      "examples:\n  rondo explore examples/koord/leader.koord --robots 8\n"
+      "examples:\n"
+      "  rondo explore examples/koord/leader.koord --robots 8\n"
       "  rondo explore examples/koord/mutex_naive.koord\n"
-      "  rondo explore --walks 100 --seed 7 examples/koord/addnums.koord\n\n"
-      "The `explore` section of the specification gives parameters, sensors and external functions values "
-      "(docs/language.md).\n"
+      "  rondo explore --walks 100 --seed 7 examples/koord/addnums.koord\n"
+      "\n"
+      "The `explore` section of the specification gives parameters, sensors and external functions values (docs/language.md).\n"
       "exit status: 0 no property is broken, 1 one is, 3 not everything was explored or checked");
   verb.Run([options, &status] { status = Run(*options); });
 }

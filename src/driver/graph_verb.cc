@@ -4,14 +4,16 @@
 
 #include "choreo/draw/chart.h"
 #include "driver/command.h"
-#include "driver/exit_status.h"
-#include "driver/motion.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "lang/expr_printer.h"
 #include "lang/suggest.h"
+#include "workspace/module_files.h"
 
 namespace rondo::driver {
+
+using verdict::ExitStatus;
+
 namespace {
 
 using choreo::Graph;
@@ -102,10 +104,9 @@ std::string ToText(const Graph& graph, const lang::ExprPool& pool) {
   return text;
 }
 
-int Run(const Options& options) {
-  Session session;
-  const auto motion = LoadMotion(options.files, {}, session);
-  if (motion == nullptr) return kRejected;
+ExitStatus Run(const Options& options) {
+  workspace::Session session;
+  const auto motion = workspace::LoadModule(options.files, {}, session);
   std::vector<const Graph*> graphs;
   std::vector<std::string> names;
   for (const Graph& graph : motion->graphs) {
@@ -119,13 +120,13 @@ int Run(const Options& options) {
                      ? std::string("there is no choreography in these files")
                      : fmt::format("there is no choreography `{}`{}", options.choreography,
                                    near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
-    return kRejected;
+    return ExitStatus::kRejected;
   }
   if (good && !options.svg.empty()) {
     if (graphs.size() == 1)
       return WritePicture(options.svg, choreo::DrawChart(*graphs[0], motion->module.exprs));
     PrintFailure("a picture shows one choreography: choose one by --choreography");
-    return kUsage;
+    return ExitStatus::kUsage;
   }
   if (options.json) {
     nlohmann::json list = nlohmann::json::array();
@@ -133,17 +134,17 @@ int Run(const Options& options) {
     PrintJson({{"command", "graph"},
                {"ok", good},
                {"graphs", good ? list : nlohmann::json::array()},
-               {"diagnostics", DiagnosticsToJson(session.sources, session.diagnostics)}});
+               {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}});
   } else {
     for (const Graph* graph : graphs) Print(ToText(*graph, motion->module.exprs));
     PrintDiagnostics(session.sources, session.diagnostics);
   }
-  return good ? kEstablished : kRejected;
+  return good ? ExitStatus::kEstablished : ExitStatus::kRejected;
 }
 
 }  // namespace
 
-void AddGraphVerb(CLI::App& app, int& status) {
+void AddGraphVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
   Command verb(app, "graph", "show a choreography: as a picture, a list or JSON");
   verb.Option("FILE", options->files, "a `.rondo` file, and a `.chor` file about its world if there is one")

@@ -2,14 +2,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include "contracts/choreography_report.h"
 #include "driver/command.h"
-#include "driver/exit_status.h"
-#include "driver/motion.h"
-#include "driver/motion_report.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
+#include "workspace/module_files.h"
 
 namespace rondo::driver {
+
+using verdict::ExitStatus;
+
 namespace {
 
 struct Options {
@@ -19,42 +21,48 @@ struct Options {
   bool json = false;
 };
 
-int Finish(const Options& options, const Session& session, const nlohmann::json& list, int status) {
+ExitStatus Finish(const Options& options, const workspace::Session& session, const nlohmann::json& list,
+                  ExitStatus status) {
   if (options.json) {
     PrintJson({{"command", "infer regions"},
                {"status", status},
                {"regions", list},
-               {"diagnostics", DiagnosticsToJson(session.sources, session.diagnostics)}});
+               {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}});
   } else {
     PrintDiagnostics(session.sources, session.diagnostics);
   }
   return status;
 }
 
-int Run(const Options& options) {
-  Session session;
+ExitStatus Run(const Options& options) {
+  workspace::Session session;
   nlohmann::json list = nlohmann::json::array();
-  const auto motion = LoadMotion(options.files, options.admitted, session);
-  if (motion == nullptr) return kRejected;
-  const auto conditions = CheckStructure(*motion, session);
-  if (!conditions || session.diagnostics.has_errors()) return Finish(options, session, list, kRejected);
-  const base::StopToken stop;
+  const auto motion = workspace::LoadModule(options.files, options.admitted, session);
+  const auto conditions = workspace::CheckStructure(*motion, session);
+  if (!conditions || session.diagnostics.has_errors())
+    return Finish(options, session, list, ExitStatus::kRejected);
+  ProgressLine line;
+  contracts::ChoreographyOptions search;
+  const InterruptScope interrupt(search.stop);
+  search.timeout = options.timeout;
+  search.progress = [&](const std::string& what) { line.Show(what); };
   std::string text;
   for (choreo::Graph& graph : motion->graphs) {
-    const choreo::Inference regions = FindRegions(graph, motion->arena, options.timeout, stop);
-    text += RegionLines(regions, session.sources);
+    const choreo::Inference regions = contracts::FindRegions(graph, motion->arena, search);
+    text += contracts::RegionLines(regions, session.sources);
     for (const choreo::FoundRegion& r : regions.found)
       list.push_back({{"robots", r.robots}, {"region", r.text}});
-    ReportRegions(regions, session.diagnostics);
+    contracts::ReportRegions(regions, session.diagnostics);
   }
   if (!options.json)
     Print(text.empty() && !session.diagnostics.has_errors() ? "every thread has a region\n" : text);
-  return Finish(options, session, list, session.diagnostics.has_errors() ? kUndecided : kEstablished);
+  return Finish(options, session, list,
+                session.diagnostics.has_errors() ? ExitStatus::kUndecided : ExitStatus::kEstablished);
 }
 
 }  // namespace
 
-void AddInferVerb(CLI::App& app, int& status) {
+void AddInferVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
   Command verb(app, "infer", "find what would otherwise be written by hand");
   Command regions = verb.Verb("regions", "regions for the threads that have none");
@@ -66,10 +74,10 @@ void AddInferVerb(CLI::App& app, int& status) {
       .Between(0.001, 1e6);
   regions.Flag("--json", options->json, "the regions as JSON on standard output");
   regions.Footer(
-      "example: rondo infer regions examples/choreo/shuttle.rondo\n\n"
-      "Prints where each thread is and `thread region ...` to paste there. Every motion of a thread is "
-      "proved to "
-      "keep to\nits region; `rondo prove` finds the same regions by itself.\n"
+      "example: rondo infer regions examples/choreo/shuttle.rondo\n"
+      "\n"
+      "Prints where each thread is and `thread region ...` to paste there. Every motion of a thread is proved to keep to\n"
+      "its region; `rondo prove` finds the same regions by itself.\n"
       "exit status: 0 every thread has a region now, 1 wrong input, 3 none was found for some");
   regions.Run([options, &status] { status = Run(*options); });
 }

@@ -10,24 +10,25 @@
 #include <exception>
 #include <new>
 
-#include "driver/exit_status.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "solve/z3/z3_solver.h"
 
 namespace rondo::driver {
 
+using verdict::ExitStatus;
+
 int Main(int argc, char** argv) {
   // A reader that goes away (`rondo ... | head`) ends the output, not the program with a signal.
   ::signal(SIGPIPE, SIG_IGN);
-  int status = kEstablished;
+  ExitStatus status = ExitStatus::kEstablished;
   CLI::App app{"Rondo: write, prove and run programs for teams of robots", "rondo"};
   app.require_subcommand(1);
   app.set_version_flag("--version", "rondo 0.1.0");
   app.footer(
-      "example: rondo prove examples/koord/lineform.koord\n\n"
-      "exit status: 0 established, 1 wrong input, refuted or not inductive, 2 usage, 3 unknown, 4 a bug of "
-      "ours");
+      "example: rondo prove examples/koord/lineform.koord\n"
+      "\n"
+      "exit status: 0 established, 1 wrong input, refuted or not inductive, 2 usage, 3 unknown, 4 a bug of ours");
   AddCheckVerb(app, status);
   AddFormatVerb(app, status);
   AddProveVerb(app, status);
@@ -48,24 +49,25 @@ int Main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);
-    return code == 0 ? kEstablished : kUsage;
+    return static_cast<int>(code == 0 ? ExitStatus::kEstablished : ExitStatus::kUsage);
   } catch (const std::bad_alloc&) {
     PrintFailure("out of memory");
-    return kUndecided;
+    return static_cast<int>(ExitStatus::kUndecided);
   } catch (const std::exception& error) {
     PrintFailure(fmt::format("bug: {}", error.what()));
-    return kBug;
+    return static_cast<int>(ExitStatus::kBug);
   }
   // A reader that went away is no error; a full disk is.
-  if ((std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && errno != EPIPE && status == kEstablished) {
+  if ((std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && errno != EPIPE &&
+      status == ExitStatus::kEstablished) {
     PrintFailure("cannot write the output");
-    return kRejected;
+    return static_cast<int>(ExitStatus::kRejected);
   }
   if (solve::z3::LeftBehind()) {
     std::fflush(nullptr);
-    std::_Exit(status);
+    std::_Exit(static_cast<int>(status));
   }
-  return status;
+  return static_cast<int>(status);
 }
 
 }  // namespace rondo::driver

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include "driver/command.h"
-#include "driver/exit_status.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "sim/draw/plots.h"
@@ -9,6 +8,9 @@
 #include "trace/reader.h"
 
 namespace rondo::driver {
+
+using verdict::ExitStatus;
+
 namespace {
 
 struct Options {
@@ -19,16 +21,16 @@ struct Options {
   bool map = false;
 };
 
-int Run(const Options& options) {
+ExitStatus Run(const Options& options) {
   const auto bytes = trace::ReadTrace(options.trace);
   if (!bytes.ok()) {
     PrintFailure(fmt::format("cannot read `{}`: {}", options.trace, bytes.error().message));
-    return kRejected;
+    return ExitStatus::kRejected;
   }
   const auto history = sim::ReadHistory(bytes.value());
   if (!history.ok()) {
     PrintFailure(fmt::format("`{}`: {}", options.trace, history.error().message));
-    return kRejected;
+    return ExitStatus::kRejected;
   }
   diag::SourceSet sources;
   diag::Diagnostics ignored;  // it could be read when the trace was made
@@ -36,7 +38,7 @@ int Run(const Options& options) {
   const sim::World world = sim::ReadFleet(sources, file, ignored).world;
   if (options.map && history.value().map.cells.empty()) {
     PrintFailure(fmt::format("`{}` has no map", options.trace));
-    return kRejected;
+    return ExitStatus::kRejected;
   }
   const std::string svg = options.map         ? sim::DrawMap(history.value(), world)
                           : options.distances ? sim::DrawDistances(history.value(), world)
@@ -46,7 +48,7 @@ int Run(const Options& options) {
 
 }  // namespace
 
-void AddPlotVerb(CLI::App& app, int& status) {
+void AddPlotVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
   Command verb(app, "plot", "draw a simulated run");
   verb.Option("TRACE", options->trace, "what `rondo simulate --trace` wrote").Required();
@@ -60,7 +62,8 @@ void AddPlotVerb(CLI::App& app, int& status) {
   paths.Excludes(distances).Excludes(map);
   distances.Excludes(map);
   verb.Footer(
-      "examples:\n  rondo simulate examples/koord/lineform --trace line.mcap\n"
+      "examples:\n"
+      "  rondo simulate examples/koord/lineform --trace line.mcap\n"
       "  rondo plot line.mcap --svg paths.svg\n"
       "  rondo plot line.mcap --distances --svg distances.svg");
   verb.Run([options, &status] { status = Run(*options); });

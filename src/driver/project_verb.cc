@@ -6,14 +6,16 @@
 #include "choreo/project/project.h"
 #include "choreo/wellformed/wellformed.h"
 #include "driver/command.h"
-#include "driver/exit_status.h"
-#include "driver/motion.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "lang/expr_printer.h"
 #include "lang/suggest.h"
+#include "workspace/module_files.h"
 
 namespace rondo::driver {
+
+using verdict::ExitStatus;
+
 namespace {
 
 using choreo::Action;
@@ -47,10 +49,9 @@ nlohmann::json ToJson(const choreo::Graph& graph, const lang::ExprPool& pool, co
   return {{"choreography", graph.source->name.text}, {"robot", graph.NameOf(type.robot)}, {"states", states}};
 }
 
-int Run(const Options& options) {
-  Session session;
-  const auto motion = LoadMotion({options.file}, {}, session);
-  if (motion == nullptr) return kRejected;
+ExitStatus Run(const Options& options) {
+  workspace::Session session;
+  const auto motion = workspace::LoadModule({options.file}, {}, session);
   nlohmann::json list = nlohmann::json::array();
   std::string text, picture;
   std::vector<std::string> robots;
@@ -73,17 +74,17 @@ int Run(const Options& options) {
     const std::string near = lang::Suggest(options.robot, robots);
     PrintFailure(fmt::format("there is no robot `{}`{}", options.robot,
                              near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
-    return kRejected;
+    return ExitStatus::kRejected;
   }
   if (good && !options.svg.empty()) {
     if (list.size() != 1) {
       PrintFailure("a picture shows one robot: name it behind the file");
-      return kUsage;
+      return ExitStatus::kUsage;
     }
     return WritePicture(options.svg, picture);
   }
   if (options.json) {
-    const nlohmann::json diagnostics = DiagnosticsToJson(session.sources, session.diagnostics);
+    const nlohmann::json diagnostics = diag::RenderJson(session.sources, session.diagnostics);
     PrintJson({{"command", "project"},
                {"ok", good},
                {"types", good ? list : nlohmann::json::array()},
@@ -92,12 +93,12 @@ int Run(const Options& options) {
     if (good) Print(text);
     PrintDiagnostics(session.sources, session.diagnostics);
   }
-  return good ? kEstablished : kRejected;
+  return good ? ExitStatus::kEstablished : ExitStatus::kRejected;
 }
 
 }  // namespace
 
-void AddProjectVerb(CLI::App& app, int& status) {
+void AddProjectVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
   Command verb(app, "project", "show what each robot of a choreography does: its local type");
   verb.Option("FILE", options->file, "robots, a world and choreographies (`.rondo`)").Required();
@@ -106,7 +107,8 @@ void AddProjectVerb(CLI::App& app, int& status) {
   verb.Flag("--json", options->json, "the automata as JSON on standard output");
   verb.Footer(
       "example: rondo project examples/choreo/handover.rondo arm\n"
-      "         rondo project examples/choreo/handover.rondo arm --svg arm.svg\n\n"
+      "         rondo project examples/choreo/handover.rondo arm --svg arm.svg\n"
+      "\n"
       "Each line is a step: the state, what the robot does or what happens to it, and the state behind it.");
   verb.Run([options, &status] { status = Run(*options); });
 }

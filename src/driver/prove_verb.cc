@@ -2,22 +2,23 @@
 
 #include <nlohmann/json.hpp>
 
+#include "contracts/discharge.h"
+#include "contracts/program_report.h"
 #include "driver/command.h"
-#include "driver/discharge.h"
-#include "driver/exit_status.h"
-#include "driver/interrupt.h"
-#include "driver/koord_load.h"
-#include "driver/motion.h"
-#include "driver/motion_prove.h"
-#include "driver/prove_report.h"
-#include "driver/reach.h"
+#include "driver/prove_choreographies.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
+#include "runs/witness_search.h"
 #include "solve/cache/caching_solver.h"
 #include "solve/smtlib/smtlib_solver.h"
 #include "solve/z3/z3_solver.h"
+#include "workspace/koord_files.h"
+#include "workspace/module_files.h"
 
 namespace rondo::driver {
+
+using verdict::ExitStatus;
+
 namespace {
 
 struct Options {
@@ -47,33 +48,40 @@ koord::ProveOptions ToProveOptions(const Options& options) {
   return prove;
 }
 
-int StatusOf(const koord::Report& report) {
-  if (report.disagreement) return kBug;
-  if (report.AnyFailed()) return kRejected;
-  if (!report.problems.empty()) return kRejected;
-  return report.AllProved() ? kEstablished : kUndecided;
+ExitStatus StatusOf(const koord::Report& report) {
+  if (report.disagreement) return ExitStatus::kBug;
+  if (report.AnyFailed()) return ExitStatus::kRejected;
+  if (!report.problems.empty()) return ExitStatus::kRejected;
+  return report.AllProved() ? ExitStatus::kEstablished : ExitStatus::kUndecided;
 }
 
-int Run(const Options& options) {
-  Session session;
-  const auto loaded = LoadKoord({options.file, options.spec, true}, session);
-  if (!loaded && !session.diagnostics.has_errors()) return kRejected;
-  const auto finish_early = [&](int status) {
-    if (options.json)
-      PrintJson(ProveJson(session, options.file, nullptr, status));
-    else
+// What the JSON of every end has.
+nlohmann::json Envelope(const Options& options, const workspace::Session& session, ExitStatus status) {
+  return {{"command", "prove"},
+          {"file", options.file},
+          {"status", status},
+          {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}};
+}
+
+ExitStatus Run(const Options& options) {
+  workspace::Session session;
+  const auto loaded = workspace::LoadKoord({options.file, options.spec, true}, session);
+  const auto finish_early = [&](ExitStatus status) {
+    if (options.json) {
+      PrintJson(Envelope(options, session, status));
+    } else {
       PrintDiagnostics(session.sources, session.diagnostics);
+    }
     return status;
   };
-  if (!loaded) return finish_early(kRejected);
+  if (!loaded) return finish_early(ExitStatus::kRejected);
   const koord::Model& model = loaded->model;
   if (model.invariants.empty()) {
     session.diagnostics
         .Report(diag::Kind::kKoordNoInvariant, loaded->program.item_spans.back(), "there is nothing to prove")
         .Help(
-            "state what must always hold: `invariant NAME: ...`, here or in the `.spec` file beside the "
-            "program");
-    return finish_early(kRejected);
+            "state what must always hold: `invariant NAME: ...`, here or in the `.spec` file beside the program");
+    return finish_early(ExitStatus::kRejected);
   }
   const solve::z3::Z3Solver z3;
   const solve::cache::ProofCache cache(options.no_cache ? std::filesystem::path()
@@ -92,11 +100,11 @@ int Run(const Options& options) {
     };
     report = koord::Prove(model, prove, session.diagnostics);
   }
-  if (report.rows.empty()) return finish_early(kRejected);
-  std::vector<Reached> reached;
+  if (report.rows.empty()) return finish_early(ExitStatus::kRejected);
+  std::vector<runs::Reached> reached;
   {
     ProgressLine line;
-    ReachRequest request;
+    runs::ReachRequest request;
     if (options.reach > 0) request.rounds = options.reach;
     if (options.robots > 0) request.robots = static_cast<size_t>(options.robots);
     request.file = options.file;
@@ -105,44 +113,44 @@ int Run(const Options& options) {
     request.exploration.progress = [&](const explore::SearchOptions::Progress& p) {
       line.Show(fmt::format("[reach] {} states, frontier {}, depth {}", p.states, p.frontier, p.depth));
     };
-    reached = SearchWitnesses(model, report, request, session.diagnostics);
+    reached = runs::SearchWitnesses(model, report, request, session.diagnostics);
   }
-  const std::vector<std::string> discharged =
-      Discharge(*loaded, session, cache, options.file, report.assumed);
-  const int status = StatusOf(report);
+  contracts::Discharge(*loaded, session, cache, options.file, report.basis);
+  const ExitStatus status = StatusOf(report);
   if (options.json) {
-    nlohmann::json json = ProveJson(session, options.file, &report, status);
-    json["proved_by_reachability"] = discharged;
-    for (const Reached& r : reached)
+    nlohmann::json json = Envelope(options, session, status);
+    json.update(contracts::ToJson(report, session.sources));
+    for (const runs::Reached& r : reached)
       json["reach"].push_back(
           {{"invariant", r.invariant}, {"found", r.found}, {"text", r.text}, {"run", r.run}});
     PrintJson(json);
     return status;
   }
-  Print(ProveHeader(options.file, report, prove, options.no_cache ? 0 : caching.hits()));
-  Print(ProveTable(report));
+  Print(contracts::ProveHeader(options.file, report, prove, options.no_cache ? 0 : caching.hits()));
+  Print(contracts::ProveTable(report));
   if (!session.diagnostics.all().empty()) {
     Print("\n");
     PrintDiagnostics(session.sources, session.diagnostics);
   }
-  for (const Reached& r : reached) Print(fmt::format("\nsearch: {}\n", r.text));
-  Print(ProveSummary(report, prove, status, discharged));
+  for (const runs::Reached& r : reached) Print(fmt::format("\nsearch: {}\n", r.text));
+  Print(contracts::ProveSummary(report, prove));
+  PrintStatus(status);
   return status;
 }
 
-MotionProveOptions ToMotionOptions(const Options& options) {
-  MotionProveOptions motion;
-  motion.files = options.files;
-  motion.admitted = options.admitted;
-  motion.jobs = options.jobs;
-  motion.timeout = options.timeout;
-  motion.smt_out = options.smt_out;
-  motion.certificates = options.certificates;
-  motion.svg = options.svg;
-  motion.certify = !options.no_certify;
-  motion.cache = !options.no_cache;
-  motion.json = options.json;
-  return motion;
+ProveChoreographiesOptions ToChoreographyOptions(const Options& options) {
+  ProveChoreographiesOptions prove;
+  prove.files = options.files;
+  prove.admitted = options.admitted;
+  prove.jobs = options.jobs;
+  prove.timeout = options.timeout;
+  prove.smt_out = options.smt_out;
+  prove.certificates = options.certificates;
+  prove.svg = options.svg;
+  prove.certify = !options.no_certify;
+  prove.cache = !options.no_cache;
+  prove.json = options.json;
+  return prove;
 }
 
 // Options that belong to the other language are a mistake, not to be ignored.
@@ -152,10 +160,10 @@ void Refuse(const Command& verb, std::initializer_list<const char*> names, const
   }
 }
 
-int Dispatch(Options& options, const Command& verb) {
-  if (IsMotionFile(options.files[0])) {
+ExitStatus Dispatch(Options& options, const Command& verb) {
+  if (workspace::IsModuleFile(options.files[0])) {
     Refuse(verb, {"--spec", "--robots", "--cross-check", "--reach"}, "choreographies");
-    return ProveMotion(ToMotionOptions(options));
+    return ProveChoreographies(ToChoreographyOptions(options));
   }
   Refuse(verb, {"--option", "--certificates", "--svg", "--no-certify"}, "Koord programs");
   if (options.files.size() > 1) RefuseOption("FILE", "one Koord program at a time");
@@ -165,12 +173,13 @@ int Dispatch(Options& options, const Command& verb) {
 
 }  // namespace
 
-void AddProveVerb(CLI::App& app, int& status) {
+void AddProveVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
   Command verb(app, "prove", "prove Koord programs for any number of robots, and choreographies of motions");
-  verb.Option("FILE", options->files,
-              "a Koord program (`NAME.spec` beside it belongs to it), or a choreography (`.rondo`), perhaps "
-              "with original choreographies (`.chor`) and programs (`ROBOT.rosl`) behind it")
+  verb.Option(
+          "FILE", options->files,
+          "a Koord program (`NAME.spec` beside it belongs to it), or a choreography (`.rondo`), perhaps with original "
+          "choreographies (`.chor`) and programs (`ROBOT.rosl`) behind it")
       .Required();
   verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
   verb.Option("--robots", options->robots, "fix the number of robots; default: every N >= 1")
@@ -195,10 +204,12 @@ void AddProveVerb(CLI::App& app, int& status) {
   verb.Flag("--no-cache", options->no_cache, "neither use nor fill the proof cache");
   verb.Flag("--json", options->json, "the verdicts as JSON on standard output");
   verb.Footer(
-      "examples:\n  rondo prove examples/koord/lineform.koord\n"
+      "examples:\n"
+      "  rondo prove examples/koord/lineform.koord\n"
       "  rondo prove --robots 15 --cross-check cvc5 examples/koord/delivery.koord\n"
       "  rondo prove examples/choreo/handover.rondo\n"
-      "  rondo prove --svg scene.svg --smt-out obligations examples/choreo/underpass.rondo\n\n"
+      "  rondo prove --svg scene.svg --smt-out obligations examples/choreo/underpass.rondo\n"
+      "\n"
       "exit status: 0 everything proved, 1 something refuted or not inductive, 3 something undecided");
   verb.Run([options, verb, &status] { status = Dispatch(*options, verb); });
 }

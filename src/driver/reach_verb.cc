@@ -5,23 +5,25 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "contracts/discharge.h"
+#include "contracts/ranges.h"
+#include "contracts/report.h"
+#include "contracts/statistical.h"
+#include "contracts/sweep.h"
+#include "contracts/tube_certificate.h"
+#include "contracts/tube_reuse.h"
 #include "driver/command.h"
-#include "driver/course_file.h"
-#include "driver/discharge.h"
-#include "driver/exit_status.h"
-#include "driver/interrupt.h"
-#include "driver/ranges.h"
-#include "driver/reachability.h"
-#include "driver/run_file.h"
-#include "driver/statistical.h"
-#include "driver/sweep.h"
 #include "driver/terminal.h"
-#include "driver/tube_certificate.h"
-#include "driver/tube_reuse.h"
 #include "driver/verbs.h"
 #include "reach/draw/tube.h"
+#include "runs/execution_file.h"
+#include "runs/run_file.h"
+#include "workspace/places.h"
 
 namespace rondo::driver {
+
+using verdict::ExitStatus;
+
 namespace {
 
 struct Options {
@@ -32,7 +34,7 @@ struct Options {
   unsigned jobs = 0;
   uint64_t seed = 1;
   bool statistical = false;
-  StatisticalOptions sampling;
+  contracts::StatisticalOptions sampling;
   std::vector<std::string> sweep;  ///< the parameter, its range
   size_t parts = 64;
   std::vector<std::string> ranges;
@@ -47,11 +49,11 @@ class Run {
  public:
   explicit Run(const Options& options) : options_(options) {}
 
-  int operator()() {
-    if (!ReadSweep() || !ReadBetween() || !OptionsFit()) return kRejected;
-    if (!Load()) return Finish(kRejected);
+  ExitStatus operator()() {
+    if (!ReadSweep() || !ReadBetween() || !OptionsFit()) return ExitStatus::kRejected;
+    if (!Load()) return Finish(ExitStatus::kRejected);
     if (!options_.contract.empty()) {
-      std::erase_if(loaded_.results, [&](const ContractResult& r) {
+      std::erase_if(loaded_.results, [&](const contracts::ContractResult& r) {
         return r.made.problem.name.find(options_.contract) == std::string::npos;
       });
     }
@@ -61,10 +63,9 @@ class Run {
                   options_.contract.empty() ? "there is no contract to look at"
                                             : fmt::format("no contract is called `{}`", options_.contract))
           .Help(
-              "the motions of a choreography; or of robot types, if their parameters have values or ranges; "
-              "of a Koord "
-              "program, the assumptions about modules with a `platform`");
-      return Finish(kRejected);
+              "the motions of a choreography; or of robot types, if their parameters have values or ranges; of a Koord program, the "
+              "assumptions about modules with a `platform`");
+      return Finish(ExitStatus::kRejected);
     }
     if (options_.statistical) return SampleAll();
     if (loose_) return SweepAll();
@@ -73,16 +74,15 @@ class Run {
       const InterruptScope interrupt(stop_);
       for (size_t i = 0; i < loaded_.results.size(); ++i) Decide(i, line);
     }
-    int status = kEstablished;
-    for (const ContractResult& r : loaded_.results) {
-      ReportContract(r, session_.diagnostics);
-      const int own = StatusOf(r);
-      if (own == kRejected || (own == kUndecided && status == kEstablished)) status = own;
+    ExitStatus status = ExitStatus::kEstablished;
+    for (const contracts::ContractResult& r : loaded_.results) {
+      contracts::ReportContract(r, session_.diagnostics);
+      status = verdict::Worse(status, verdict::StatusOf(contracts::VerdictOf(r)));
     }
-    if (unwritten_ || wrong_range_) status = kRejected;
+    if (unwritten_ || wrong_range_) status = ExitStatus::kRejected;
     status = Finish(status);
     for (const auto& [path, svg] : pictures_) {
-      if (WritePicture(path, svg, options_.json) != kEstablished) status = kRejected;
+      if (WritePicture(path, svg, options_.json) != ExitStatus::kEstablished) status = ExitStatus::kRejected;
     }
     return status;
   }
@@ -90,14 +90,14 @@ class Run {
  private:
   bool Load() {
     const bool reduce = options_.ranges.empty();  // else places are asked about
-    return LoadContracts(options_.files, options_.spec, loose_ ? &*loose_ : nullptr, reduce, session_,
-                         loaded_);
+    return contracts::LoadContracts(options_.files, options_.spec, loose_ ? &*loose_ : nullptr, reduce,
+                                    session_, loaded_);
   }
 
   // NAME FROM..TO
   bool ReadSweep() {
     if (options_.sweep.empty()) return true;
-    const auto range = ReadRange(options_.sweep[1]);
+    const auto range = contracts::ReadRange(options_.sweep[1]);
     if (!range || range->first == range->second) {
       PrintFailure(fmt::format("`--sweep` takes a name and a range, as in `--sweep gain 0.5..4`: not `{}`",
                                options_.sweep[1]));
@@ -120,67 +120,69 @@ class Run {
   // FROM..TO
   bool ReadBetween() {
     if (options_.between.empty()) return true;
-    between_ = ReadRange(options_.between);
+    between_ = contracts::ReadRange(options_.between);
     if (!between_)
       PrintFailure(
           fmt::format("`--between` takes seconds, as in `--between 0.5..4`: not `{}`", options_.between));
     return between_.has_value();
   }
 
-  int SweepAll() {
-    int status = kEstablished;
+  ExitStatus SweepAll() {
+    ExitStatus status = ExitStatus::kEstablished;
     size_t with = 0;
     nlohmann::json list = nlohmann::json::array();
     std::string text;
     {
       ProgressLine line;
       const InterruptScope interrupt(stop_);
-      for (ContractResult& r : loaded_.results) {
+      for (contracts::ContractResult& r : loaded_.results) {
         const auto it = std::ranges::find(r.made.names, loose_->name);
         if (it == r.made.names.end()) continue;
         ++with;
         // What is known of it is known for less: a part of its own range.
         interval::Interval& side = r.made.problem.initial[static_cast<size_t>(it - r.made.names.begin())];
         side = interval::Meet(side, {loose_->least.ToDouble(), loose_->most.ToDouble()});
-        DecideOptions options{options_.timeout, options_.jobs, options_.seed, !options_.no_certify, {}};
+        contracts::DecideOptions options{
+            options_.timeout, options_.jobs, options_.seed, !options_.no_certify, {}};
         options.progress = [&](size_t parts, size_t) {
           line.Show(fmt::format("{}: {} parts of the range", r.made.problem.name, parts));
         };
         if (side.IsEmpty()) r.impossible = fmt::format("`{}` is never in this range", loose_->name);
-        const Sweep sweep = SweepContract(r, loose_->name, options_.parts, options, stop_);
-        const int own = StatusOf(sweep);
-        if (own == kRejected || (own == kUndecided && status == kEstablished)) status = own;
+        const contracts::Sweep sweep =
+            contracts::SweepContract(r, loose_->name, options_.parts, options, stop_);
+        status = verdict::Worse(status, verdict::StatusOf(contracts::VerdictOf(sweep)));
         list.push_back(ToJson(sweep));
         text += ToText(sweep);
       }
     }
     if (with == 0) {
       PrintFailure(
-          fmt::format("no contract depends on `{}`: name a parameter of a robot, or of a motion, or a "
-                      "state",
+          fmt::format("no contract depends on `{}`: name a parameter of a robot, or of a motion, or a state",
                       loose_->name));
-      return kRejected;
+      return ExitStatus::kRejected;
     }
     if (options_.json) {
       PrintJson({{"command", "reach"}, {"status", status}, {"sweeps", list}});
     } else {
       Print(text);
-      if (status != kEstablished) Print(fmt::format("exit {}\n", status));
+      PrintStatus(status);
     }
     return status;
   }
 
   // Refutations as files that replay, and pictures.
   void Keep(size_t index) {
-    ContractResult& r = loaded_.results[index];
+    contracts::ContractResult& r = loaded_.results[index];
     if (!r.outcome) return;
     if (const auto* refuted = std::get_if<reach::Refuted>(&*r.outcome)) {
-      const std::string path = options_.save.empty() ? DefaultRunFile(options_.files[0], r.made.problem.name)
-                                                     : Numbered(options_.save, index);
-      const CourseFile file{options_.files,      options_.spec,
-                            r.made.problem.name, r.made.problem.claims[refuted->violation.claim].name,
-                            refuted->course,     refuted->violation.time};
-      const auto written = SaveCourse(path, file);
+      const std::string path = options_.save.empty()
+                                   ? workspace::DefaultRunFile(options_.files[0], r.made.problem.name)
+                                   : Numbered(options_.save, index);
+      const runs::ExecutionFile file{
+          options_.files,      options_.spec,
+          r.made.problem.name, r.made.problem.claims[refuted->violation.claim].name,
+          refuted->execution,  refuted->violation.time};
+      const auto written = runs::SaveExecution(path, file);
       if (written.ok()) {
         saved_.push_back(path);
       } else {
@@ -203,49 +205,52 @@ class Run {
   }
 
   void Decide(size_t index, ProgressLine& line) {
-    ContractResult& r = loaded_.results[index];
+    contracts::ContractResult& r = loaded_.results[index];
     const std::string& name = r.made.problem.name;
-    DecideOptions options{options_.timeout, options_.jobs, options_.seed, !options_.no_certify, {}};
+    contracts::DecideOptions options{
+        options_.timeout, options_.jobs, options_.seed, !options_.no_certify, {}};
     options.progress = [&](size_t done, size_t open) {
       line.Show(fmt::format("[{}/{}] {}: {} parts proved, {} open", index + 1, loaded_.results.size(), name,
                             done, open));
     };
     line.Show(fmt::format("[{}/{}] {}", index + 1, loaded_.results.size(), name));
     // The same motion elsewhere, or of another robot of the same type, is proved already.
-    TubeReuse::Cover cover;
+    contracts::TubeReuse::Cover cover;
     if (options_.ranges.empty()) cover = reuse_.Covers(r);
     r.same_as = cover.contract;
     r.certified = cover.certified;
-    if (r.same_as.empty()) DecideContract(r, options, stop_);
+    if (r.same_as.empty()) contracts::DecideContract(r, options, stop_);
     if (r.outcome && std::holds_alternative<reach::Proved>(*r.outcome))
-      cover.certificate = CertificateOf(std::get<reach::Proved>(*r.outcome));
+      cover.certificate = contracts::CertificateOf(std::get<reach::Proved>(*r.outcome));
     if (cover.certificate && !options_.no_certify && !stop_.cancelled()) {
       line.Show(fmt::format("[{}/{}] {}: certifying", index + 1, loaded_.results.size(), name));
-      CertifyContract(r, *cover.certificate, options_.jobs, stop_);
+      contracts::CertifyContract(r, *cover.certificate, options_.jobs, stop_);
       if (r.IsCertified() && !options_.certificates.empty()) SaveCertificate(index, *cover.certificate);
     }
     if (!options_.ranges.empty()) {
       line.Show(fmt::format("[{}/{}] {}: ranges", index + 1, loaded_.results.size(), name));
       ranges_.resize(loaded_.results.size());
-      ranges_[index] = RangesOf(r, options_.ranges, between_, options_.jobs, stop_);
-      wrong_range_ = wrong_range_ || (VerdictOf(r) == "proved" && !ranges_[index].trouble.empty());
+      ranges_[index] = contracts::RangesOf(r, options_.ranges, between_, options_.jobs, stop_);
+      wrong_range_ =
+          wrong_range_ || (VerdictOf(r) == verdict::Verdict::kProved && !ranges_[index].trouble.empty());
     }
-    StoreProved(r, cache_);
+    contracts::StoreProved(r, cache_);
     if (index + 1 < loaded_.results.size() && cover.certificate)
       reuse_.Remember(r, std::move(*cover.certificate));
     Keep(index);
   }
 
   void SaveCertificate(size_t index, const reach::certify::Certificate& certificate) {
-    const ContractResult& r = loaded_.results[index];
-    std::filesystem::path path =
-        std::filesystem::path(options_.certificates) / (FileName(r.made.problem.name) + ".tube.json");
+    const contracts::ContractResult& r = loaded_.results[index];
+    std::filesystem::path path = std::filesystem::path(options_.certificates) /
+                                 (workspace::FileName(r.made.problem.name) + ".tube.json");
     if (std::ranges::find(certificates_, path.string()) != certificates_.end())
-      path.replace_filename(fmt::format("{}-{}.tube.json", FileName(r.made.problem.name), index + 1));
+      path.replace_filename(
+          fmt::format("{}-{}.tube.json", workspace::FileName(r.made.problem.name), index + 1));
     std::error_code ignored;
     std::filesystem::create_directories(path.parent_path(), ignored);
     const auto written =
-        SaveTube(path.string(), {options_.files, options_.spec, r.made.problem.name, certificate});
+        contracts::SaveTube(path.string(), {options_.files, options_.spec, r.made.problem.name, certificate});
     if (written.ok()) {
       certificates_.push_back(path.string());
     } else {
@@ -255,33 +260,34 @@ class Run {
   }
 
   // Samples establish nothing: a failure refutes, anything else stays open.
-  int SampleAll() {
-    StatisticalOptions sampling = options_.sampling;
+  ExitStatus SampleAll() {
+    contracts::StatisticalOptions sampling = options_.sampling;
     sampling.jobs = options_.jobs;
     sampling.seed = options_.seed;
-    int status = kUndecided;
+    ExitStatus status = ExitStatus::kUndecided;
     nlohmann::json list = nlohmann::json::array();
     const InterruptScope interrupt(stop_);
-    for (const ContractResult& r : loaded_.results) {
-      const Statistical s = Sample(r, sampling, stop_);
+    for (const contracts::ContractResult& r : loaded_.results) {
+      const contracts::Statistical s = contracts::Sample(r, sampling, stop_);
       // That a run leaves a tube that was learned from others says nothing about the contract.
-      if (s.failures + s.corner_failures > 0 && sampling.tube.empty()) status = kRejected;
+      if (s.failures + s.corner_failures > 0 && sampling.tube.empty()) status = ExitStatus::kRejected;
       if (options_.json) {
         list.push_back(ToJson(r, s, sampling));
       } else {
-        Print(StatisticalLine(r, s));
+        Print(contracts::StatisticalLine(r, s));
       }
     }
     if (options_.json) {
       PrintJson({{"command", "reach"}, {"status", status}, {"contracts", list}});
     } else {
-      Print(fmt::format("seed {}; starts drawn uniformly from initial boxes; nothing is proved\nexit {}\n",
-                        sampling.seed, status));
+      Print(fmt::format("seed {}; starts drawn uniformly from initial boxes; nothing is proved\n",
+                        sampling.seed));
+      PrintStatus(status);
     }
     return status;
   }
 
-  int Finish(int status) {
+  ExitStatus Finish(ExitStatus status) {
     if (options_.json) {
       nlohmann::json list = nlohmann::json::array();
       for (size_t i = 0; i < loaded_.results.size(); ++i) {
@@ -294,10 +300,10 @@ class Run {
                  {"runs", saved_},
                  {"certificates", certificates_},
                  {"left_out", loaded_.left_out},
-                 {"diagnostics", DiagnosticsToJson(session_.sources, session_.diagnostics)}});
+                 {"diagnostics", diag::RenderJson(session_.sources, session_.diagnostics)}});
       return status;
     }
-    if (!loaded_.results.empty()) Print(ContractTable(loaded_.results));
+    if (!loaded_.results.empty()) Print(contracts::ContractTable(loaded_.results));
     for (size_t i = 0; i < ranges_.size(); ++i)
       Print(fmt::format("{}:\n{}", loaded_.results[i].made.problem.name, ToText(ranges_[i])));
     for (const std::string& motion : loaded_.left_out) Print(fmt::format("not looked at: {}\n", motion));
@@ -309,8 +315,8 @@ class Run {
       size_t proved = 0;
       size_t certified = 0;
       std::set<std::string> assumed;
-      for (const ContractResult& r : loaded_.results) {
-        if (VerdictOf(r) != "proved") continue;
+      for (const contracts::ContractResult& r : loaded_.results) {
+        if (VerdictOf(r) != verdict::Verdict::kProved) continue;
         ++proved;
         certified += r.IsCertified() ? 1 : 0;
         if (!r.model.empty())
@@ -329,21 +335,21 @@ class Run {
       Print(fmt::format("a certificate is in {}: `rondo certify {}`\n", path, path));
     for (const std::string& path : saved_)
       Print(fmt::format("the run is in {}: `rondo replay {}`\n", path, path));
-    if (status != kEstablished) Print(fmt::format("exit {}\n", status));
+    PrintStatus(status);
     return status;
   }
 
   const Options& options_;
-  Session session_;
+  workspace::Session session_;
   const solve::cache::ProofCache cache_{options_.no_cache ? std::filesystem::path()
                                                           : solve::cache::ProofCache::DefaultFolder()};
   base::StopToken stop_;
-  LoadedContracts loaded_;
+  contracts::LoadedContracts loaded_;
   std::optional<robot::Loose> loose_;
   std::optional<std::pair<expr::Rational, expr::Rational>> between_;
-  std::vector<Ranges> ranges_;  ///< by contract, if there are any to look at
+  std::vector<contracts::Ranges> ranges_;  ///< by contract, if there are any to look at
   bool wrong_range_ = false;
-  TubeReuse reuse_;
+  contracts::TubeReuse reuse_;
   std::vector<std::string> saved_, certificates_;
   bool unwritten_ = false;
   std::vector<std::pair<std::string, std::string>> pictures_;
@@ -351,7 +357,7 @@ class Run {
 
 }  // namespace
 
-void AddReachVerb(CLI::App& app, int& status) {
+void AddReachVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
   Command verb(app, "reach", "prove contracts of motions against the dynamics of robots");
   verb.Option("FILE", options->files, "robots and choreographies (`.rondo`), or a Koord program").Required();
@@ -379,11 +385,11 @@ void AddReachVerb(CLI::App& app, int& status) {
       .Between(0.5, 0.999999999);
   verb.Option(
       "--simulator", options->sampling.simulator,
-      "of --statistical: a command or a shared library (.so) that simulates the robot instead of its model "
-      "(docs/reach.md)");
-  verb.Option("--tube", options->sampling.tube,
-              "of --statistical: judge a tube that is learned from a few runs, as Verse learns it "
-              "(`compat`) or with corners and slack (`careful`)")
+      "of --statistical: a command or a shared library (.so) that simulates the robot instead of its model (docs/reach.md)");
+  verb.Option(
+          "--tube", options->sampling.tube,
+          "of --statistical: judge a tube that is learned from a few runs, as Verse learns it (`compat`) or with corners and "
+          "slack (`careful`)")
       .OneOf({"compat", "careful"});
   verb.Option("--certificates", options->certificates,
               "write the certificate of every proof into this folder, for `rondo certify`");
@@ -391,11 +397,12 @@ void AddReachVerb(CLI::App& app, int& status) {
   verb.Flag("--no-cache", options->no_cache, "do not remember for `rondo prove` what is proved");
   verb.Flag("--json", options->json, "the result as JSON on standard output");
   verb.Footer(
-      "examples:\n  rondo reach examples/reach/laub_loomis.rondo --contract Wide --svg tube.svg\n"
-      "  rondo reach models/quadrotor.rondo --contract CrossField --sweep velocity_gain 1.2..2\n\n"
-      "For every state in which a motion may begin, every parameter and every input: does the robot keep the "
-      "motion's "
-      "contract\nunder its dynamics and controller (docs/reach.md)?\n"
+      "examples:\n"
+      "  rondo reach examples/reach/laub_loomis.rondo --contract Wide --svg tube.svg\n"
+      "  rondo reach models/quadrotor.rondo --contract CrossField --sweep velocity_gain 1.2..2\n"
+      "\n"
+      "For every state in which a motion may begin, every parameter and every input: does the robot keep the motion's contract\n"
+      "under its dynamics and controller (docs/reach.md)?\n"
       "exit status: 0 every contract is proved, 1 one is refuted, or the input is wrong, 3 neither");
   verb.Run([options, &status] { status = Run(*options)(); });
 }

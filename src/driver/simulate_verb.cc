@@ -6,15 +6,16 @@
 #include <nlohmann/json.hpp>
 
 #include "driver/command.h"
-#include "driver/exit_status.h"
-#include "driver/interrupt.h"
-#include "driver/koord_load.h"
-#include "driver/simulation_files.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
+#include "runs/simulation_files.h"
 #include "sim/simulation.h"
+#include "workspace/koord_files.h"
 
 namespace rondo::driver {
+
+using verdict::ExitStatus;
+
 namespace {
 
 struct Options {
@@ -52,9 +53,20 @@ std::string Summary(const sim::SimulationReport& report, double seconds) {
     text += fmt::format("  map: {} known, {} wrongly occupied, {} reachable but unknown\n",
                         Count(report.known_cells, "cell"), report.wrong_cells, report.reachable_unknown);
   }
-  if (report.ended == "stopped") text += "  every robot stopped\n";
-  if (report.ended == "mapped") text += "  the map is complete\n";
-  if (report.ended == "interrupted") text += "  interrupted\n";
+  switch (report.ended) {
+    case sim::Ending::kStopped:
+      text += "  every robot stopped\n";
+      break;
+    case sim::Ending::kMapped:
+      text += "  the map is complete\n";
+      break;
+    case sim::Ending::kInterrupted:
+      text += "  interrupted\n";
+      break;
+    case sim::Ending::kTime:
+    case sim::Ending::kFailed:
+      break;
+  }
   for (const sim::Violation& v : report.violations) {
     if (v.count > 1)
       text += fmt::format("  {}{}: violated {} times, first at {:.6g} s\n", v.what,
@@ -72,7 +84,7 @@ nlohmann::json ToJson(const sim::SimulationReport& report) {
       {"time", report.time},
       {"rounds", report.rounds},
       {"events", report.events},
-      {"ended", report.ended},
+      {"ended", sim::Name(report.ended)},
       {"collisions", report.collisions},
       {"observed_every", report.observed_every},
       {"least_between_robots", Finite(report.least_between_robots)},
@@ -85,44 +97,39 @@ nlohmann::json ToJson(const sim::SimulationReport& report) {
       {"log", report.log}};
 }
 
-int Run(const Options& options) {
-  Session session;
-  const SimulationFiles files = FindSimulationFiles(options.file, options.spec, options.fleet);
-  const auto loaded = LoadKoord({files.program, files.spec, true}, session);
-  if (!loaded && !session.diagnostics.has_errors()) return kRejected;
+ExitStatus Run(const Options& options) {
+  workspace::Session session;
+  const runs::SimulationFiles files = runs::FindSimulationFiles(options.file, options.spec, options.fleet);
+  const auto loaded = workspace::LoadKoord({files.program, files.spec, true}, session);
   sim::Fleet fleet;
   if (loaded) {
-    const auto file = ReadSource(files.fleet, session);
-    if (!file) {
-      PrintFailure(
-          fmt::format("a simulation needs a fleet: robots, models and a world; see docs/simulation.md"));
-      return kRejected;
-    }
-    fleet = sim::ReadFleet(session.sources, *file, session.diagnostics);
+    const auto file = workspace::ReadSource(files.fleet, session);
+    if (!file) PrintFailure("a simulation needs a fleet: robots, models and a world; see docs/simulation.md");
+    if (file) fleet = sim::ReadFleet(session.sources, *file, session.diagnostics);
   }
-  const auto finish_early = [&](int status) {
+  const auto finish_early = [&](ExitStatus status) {
     if (options.json) {
       PrintJson({{"command", "simulate"},
                  {"file", files.program},
                  {"status", status},
-                 {"diagnostics", DiagnosticsToJson(session.sources, session.diagnostics)}});
+                 {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}});
     } else {
       PrintDiagnostics(session.sources, session.diagnostics);
     }
     return status;
   };
-  if (session.diagnostics.has_errors()) return finish_early(kRejected);
+  if (session.diagnostics.has_errors()) return finish_early(ExitStatus::kRejected);
   sim::SimulationOptions simulation;
   simulation.seed = options.seed.value_or(fleet.seed.value_or(1));
   simulation.duration = options.duration;
   simulation.jobs = options.jobs;
-  KeepTexts(files, session, simulation);
+  runs::KeepTexts(files, session, simulation);
   std::optional<trace::Writer> writer;
   if (!options.trace.empty()) {
     auto opened = trace::Writer::Open(options.trace);
     if (!opened.ok()) {
       PrintFailure(fmt::format("cannot write `{}`: {}", options.trace, opened.error().message));
-      return kRejected;
+      return ExitStatus::kRejected;
     }
     writer.emplace(std::move(opened).value());
   }
@@ -143,7 +150,7 @@ int Run(const Options& options) {
         sim::Simulate(loaded->model, fleet, simulation, writer ? &*writer : nullptr, session.diagnostics);
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  if (!report.ran) return finish_early(kRejected);
+  if (!report.ran) return finish_early(ExitStatus::kRejected);
   // A run that was cut off is kept, for its end is in it; one that could not begin is not.
   bool written = true;
   if (writer) {
@@ -151,11 +158,11 @@ int Run(const Options& options) {
     written = done.ok();
     if (!written) PrintFailure(fmt::format("cannot write `{}`: {}", options.trace, done.error().message));
   }
-  int status = kEstablished;
-  if (!report.unchecked.empty() || report.ended == "interrupted") status = kUndecided;
-  if (fleet.until == "mapped" && report.ended == "time") status = kUndecided;
+  ExitStatus status = ExitStatus::kEstablished;
+  if (!report.unchecked.empty() || report.ended == sim::Ending::kInterrupted) status = ExitStatus::kUndecided;
+  if (fleet.until == "mapped" && report.ended == sim::Ending::kTime) status = ExitStatus::kUndecided;
   if (session.diagnostics.has_errors() || !written || (options.fail_on_collision && report.collisions > 0))
-    status = kRejected;
+    status = ExitStatus::kRejected;
   if (options.json) {
     nlohmann::json out = ToJson(report);
     out["command"] = "simulate";
@@ -163,7 +170,7 @@ int Run(const Options& options) {
     out["seed"] = simulation.seed;
     out["seconds"] = seconds;
     out["status"] = status;
-    out["diagnostics"] = DiagnosticsToJson(session.sources, session.diagnostics);
+    out["diagnostics"] = diag::RenderJson(session.sources, session.diagnostics);
     PrintJson(out);
     return status;
   }
@@ -176,13 +183,12 @@ int Run(const Options& options) {
 
 }  // namespace
 
-void AddSimulateVerb(CLI::App& app, int& status) {
+void AddSimulateVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
   Command verb(app, "simulate", "run a Koord program on simulated robots, in virtual time");
   verb.Option(
           "FILE", options->file,
-          "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet, `NAME.spec` the "
-          "specification")
+          "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet, `NAME.spec` the specification")
       .Required();
   verb.Option("--fleet", options->fleet, "the fleet, if it is not beside the program");
   verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
@@ -193,12 +199,13 @@ void AddSimulateVerb(CLI::App& app, int& status) {
   verb.Flag("--fail-on-collision", options->fail_on_collision, "exit status 1 if robots touch anything");
   verb.Flag("--json", options->json, "the result as JSON on standard output");
   verb.Footer(
-      "examples:\n  rondo simulate examples/koord/mapping --seed 1 --trace mapping.mcap\n"
+      "examples:\n"
+      "  rondo simulate examples/koord/mapping --seed 1 --trace mapping.mcap\n"
       "  rondo plot mapping.mcap --map --svg map.svg\n"
-      "  rondo replay mapping.mcap\n\n"
+      "  rondo replay mapping.mcap\n"
+      "\n"
       "Every invariant, assumption and summary is checked while the program runs.\n"
-      "exit status: 0 nothing was violated, 1 something was, 3 not everything could be checked, or "
-      "interrupted");
+      "exit status: 0 nothing was violated, 1 something was, 3 not everything could be checked, or interrupted");
   verb.Run([options, &status] { status = Run(*options); });
 }
 

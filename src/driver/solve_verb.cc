@@ -8,16 +8,17 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "driver/command.h"
-#include "driver/exit_status.h"
-#include "driver/interrupt.h"
-#include "driver/load.h"
-#include "driver/script_run.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
+#include "solve/script/script_run.h"
 #include "solve/smtlib/smtlib_solver.h"
 #include "solve/z3/z3_solver.h"
+#include "workspace/session.h"
 
 namespace rondo::driver {
+
+using verdict::ExitStatus;
+
 namespace {
 
 struct Options {
@@ -38,12 +39,12 @@ struct Options {
 struct Item {
   std::string path;
   lang::smtlib::Script script;
-  ScriptOutcome outcome;
+  solve::script::ScriptOutcome outcome;
 };
 
 nlohmann::json ToJson(const Item& item) {
   nlohmann::json answers = nlohmann::json::array();
-  for (const CheckOutcome& c : item.outcome.checks) {
+  for (const solve::script::CheckOutcome& c : item.outcome.checks) {
     nlohmann::json engines = nlohmann::json::array();
     for (const auto& e : c.report.outcomes)
       engines.push_back({{"engine", e.engine}, {"answer", e.answer}, {"seconds", e.seconds}});
@@ -64,7 +65,7 @@ nlohmann::json ToJson(const Item& item) {
 bool WriteCertificates(const std::vector<Item>& items, const std::filesystem::path& path) {
   size_t number = 0;
   for (const Item& item : items) {
-    for (const CheckOutcome& c : item.outcome.checks) {
+    for (const solve::script::CheckOutcome& c : item.outcome.checks) {
       const auto* unsat = std::get_if<solve::Unsat>(&c.report.answer);
       if (unsat == nullptr) continue;
       std::filesystem::path to = path;
@@ -79,29 +80,27 @@ bool WriteCertificates(const std::vector<Item>& items, const std::filesystem::pa
   return true;
 }
 
-int StatusOf(const std::vector<Item>& items) {
-  int status = kEstablished;
+ExitStatus StatusOf(const std::vector<Item>& items) {
+  ExitStatus status = ExitStatus::kEstablished;
   for (const Item& item : items) {
-    for (const CheckOutcome& c : item.outcome.checks) {
-      if (c.report.disagreement) return kBug;
-      if (c.answer != "sat" && c.answer != "unsat") status = kUndecided;
+    for (const solve::script::CheckOutcome& c : item.outcome.checks) {
+      if (c.report.disagreement) return ExitStatus::kBug;
+      if (c.answer != "sat" && c.answer != "unsat") status = ExitStatus::kUndecided;
     }
   }
   return status;
 }
 
-int Run(const Options& options) {
-  Session session;
+ExitStatus Run(const Options& options) {
+  workspace::Session session;
   std::vector<Item> items(options.files.size());
-  bool readable = true;
   for (size_t i = 0; i < items.size(); ++i) {
     items[i].path = options.files[i];
-    const auto file = ReadSource(options.files[i], session);
-    readable = readable && file;
+    const auto file = workspace::ReadSource(options.files[i], session);
     if (file) lang::smtlib::ReadScript(session.sources, *file, items[i].script, session.diagnostics);
   }
-  const nlohmann::json diagnostics = DiagnosticsToJson(session.sources, session.diagnostics);
-  if (!readable || session.diagnostics.has_errors()) {
+  const nlohmann::json diagnostics = diag::RenderJson(session.sources, session.diagnostics);
+  if (session.diagnostics.has_errors()) {
     if (options.json) {
       PrintJson({{"command", "solve"},
                  {"ok", false},
@@ -110,13 +109,13 @@ int Run(const Options& options) {
     } else {
       PrintDiagnostics(session.sources, session.diagnostics);
     }
-    return kRejected;
+    return ExitStatus::kRejected;
   }
 
   const solve::z3::Z3Solver z3;
   const bool external = options.solver != "auto" && options.solver != "icp" && options.solver != "z3";
   const solve::smtlib::SmtLibSolver process(external ? options.solver : "");
-  ScriptOptions run;
+  solve::script::ScriptOptions run;
   run.timeout = std::chrono::milliseconds(static_cast<int64_t>(options.timeout * 1000));
   run.compare = options.compare;
   run.lemmas = !options.no_lemmas;
@@ -125,7 +124,7 @@ int Run(const Options& options) {
   run.certificate = !options.certificate.empty();
   if (run.certificate && options.solver != "auto" && options.solver != "icp") {
     PrintFailure("only interval arithmetic writes certificates: use --cert without --solver, or with `icp`");
-    return kUsage;
+    return ExitStatus::kUsage;
   }
   if (options.solver == "auto" && !run.certificate) run.portfolio = {&z3};
   if (options.solver == "z3") run.only = &z3;
@@ -140,27 +139,27 @@ int Run(const Options& options) {
     std::mutex mutex;
     size_t done = 0;
     base::ParallelFor(items.size(), items.size() == 1 ? 1 : cores, [&](size_t i) {
-      items[i].outcome = RunScript(items[i].script, run, stop);
+      items[i].outcome = solve::script::RunScript(items[i].script, run, stop);
       const std::scoped_lock lock(mutex);
       line.Show(fmt::format("[{}/{}] {}", ++done, items.size(), items[i].path));
     });
   }
-  int status = StatusOf(items);
-  if (run.certificate && !WriteCertificates(items, options.certificate)) status = kRejected;
+  ExitStatus status = StatusOf(items);
+  if (run.certificate && !WriteCertificates(items, options.certificate)) status = ExitStatus::kRejected;
   if (options.json) {
     nlohmann::json files = nlohmann::json::array();
     for (const Item& item : items) files.push_back(ToJson(item));
     PrintJson({{"command", "solve"},
-               {"ok", status == kEstablished},
+               {"ok", status == ExitStatus::kEstablished},
                {"files", files},
                {"diagnostics", diagnostics}});
     return status;
   }
   for (const Item& item : items) {
     const std::string prefix = items.size() > 1 ? item.path + ": " : "";
-    Print(Prefixed(item.outcome.text, prefix));
+    Print(solve::script::Prefixed(item.outcome.text, prefix));
     if (!options.stats) continue;
-    for (const CheckOutcome& c : item.outcome.checks) {
+    for (const solve::script::CheckOutcome& c : item.outcome.checks) {
       Print(fmt::format("{}; {:.3f} s, {} boxes in {} cases ({} decided exactly), {} variables, {} nodes\n",
                         prefix, c.seconds, c.report.icp.boxes, c.report.icp.cases, c.report.icp.exact,
                         c.report.icp.variables, c.report.icp.nodes));
@@ -171,14 +170,14 @@ int Run(const Options& options) {
 
 }  // namespace
 
-void AddSolveVerb(CLI::App& app, int& status) {
+void AddSolveVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
   Command verb(app, "solve", "decide SMT-LIB 2 scripts of nonlinear real arithmetic");
   verb.Option("FILE", options->files, "scripts, in the dialect of dReal").Required();
   verb.Option(
       "--solver", options->solver,
-      "auto (interval arithmetic, then Z3 beside it), icp (interval arithmetic alone), z3, or a program "
-      "such as cvc5 or dreal; default: auto");
+      "auto (interval arithmetic, then Z3 beside it), icp (interval arithmetic alone), z3, or a program such as cvc5 or dreal; "
+      "default: auto");
   verb.Option("--jobs", options->jobs, "threads; default: one for each core");
   verb.Option("--timeout", options->timeout, "seconds for each script; default: 60").Between(0.001, 1e6);
   verb.Option("--precision", options->precision,
@@ -192,12 +191,11 @@ void AddSolveVerb(CLI::App& app, int& status) {
   verb.Flag("--stats", options->stats, "print what each question took");
   verb.Flag("--json", options->json, "the answers as JSON on standard output");
   verb.Footer(
-      "example: rondo solve --model --stats examples/smt/levels.smt2\n\n"
-      "answers: unsat (no solution, rigorously), sat (with a verified solution), delta-sat (a small box in "
-      "which\n"
+      "example: rondo solve --model --stats examples/smt/levels.smt2\n"
+      "\n"
+      "answers: unsat (no solution, rigorously), sat (with a verified solution), delta-sat (a small box in which\n"
       "nothing could be excluded), unknown\n"
-      "exit status: 0 every question answered with sat or unsat, 1 wrong input, 3 something undecided, 4 "
-      "engines\n"
+      "exit status: 0 every question answered with sat or unsat, 1 wrong input, 3 something undecided, 4 engines\n"
       "contradict each other");
   verb.Run([options, &status] { status = Run(*options); });
 }

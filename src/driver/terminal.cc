@@ -1,16 +1,30 @@
 #include "driver/terminal.h"
 
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
-#include "driver/exit_status.h"
 
 namespace rondo::driver {
+
+namespace {
+
+// A signal handler can reach nothing but globals.
+std::atomic<const base::StopToken*> current{nullptr};
+
+extern "C" void OnInterrupt(int) {
+  const base::StopToken* stop = current.load();
+  if (stop == nullptr || stop->cancelled()) ::_exit(130);
+  stop->RequestStop();
+}
+
+}  // namespace
 
 void Print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 
@@ -51,23 +65,33 @@ void PrintDiagnostics(const diag::SourceSet& sources, const diag::Diagnostics& d
   PrintError(text);
 }
 
-nlohmann::json DiagnosticsToJson(const diag::SourceSet& sources, const diag::Diagnostics& diagnostics) {
-  nlohmann::json list = nlohmann::json::array();
-  for (const diag::Diagnostic& d : diagnostics.Sorted()) list.push_back(diag::RenderJson(sources, d));
-  return list;
-}
-
-int WritePicture(const std::string& path, const std::string& svg, bool quiet) {
+verdict::ExitStatus WritePicture(const std::string& path, const std::string& svg, bool quiet) {
   const auto written = base::WriteFileAtomically(path, svg);
   if (!written.ok()) {
     PrintFailure(fmt::format("cannot write `{}`: {}", path, written.error().message));
-    return kRejected;
+    return verdict::ExitStatus::kRejected;
   }
   if (!quiet) Print(fmt::format("wrote {}\n", path));
-  return kEstablished;
+  return verdict::ExitStatus::kEstablished;
 }
 
 void PrintFailure(const std::string& message) { PrintError(fmt::format("rondo: {}\n", message)); }
+
+void PrintStatus(verdict::ExitStatus status) {
+  if (status != verdict::ExitStatus::kEstablished) Print(fmt::format("exit {}\n", static_cast<int>(status)));
+}
+
+InterruptScope::InterruptScope(const base::StopToken& stop) {
+  current = &stop;
+  struct sigaction action {};
+  action.sa_handler = OnInterrupt;
+  ::sigaction(SIGINT, &action, nullptr);
+}
+
+InterruptScope::~InterruptScope() {
+  ::signal(SIGINT, SIG_DFL);
+  current = nullptr;
+}
 
 ProgressLine::ProgressLine() : on_(::isatty(STDERR_FILENO) != 0) {}
 

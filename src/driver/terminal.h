@@ -3,8 +3,10 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "base/stop.h"
 #include "diag/diagnostic.h"
 #include "diag/render.h"
+#include "verdict/verdict.h"
 
 namespace rondo::driver {
 
@@ -21,14 +23,24 @@ diag::Colour ErrorColour();
 /// All diagnostics, sorted, to standard error, and a closing line that counts them.
 void PrintDiagnostics(const diag::SourceSet& sources, const diag::Diagnostics& diagnostics);
 
-/// All diagnostics, sorted, as `--json` shows them.
-nlohmann::json DiagnosticsToJson(const diag::SourceSet& sources, const diag::Diagnostics& diagnostics);
-
-/// Writes a picture to a file, as a whole or not at all; says so, unless `quiet`. The exit status.
-int WritePicture(const std::string& path, const std::string& svg, bool quiet = false);
+/// Writes a picture to a file, as a whole or not at all; says so, unless `quiet`.
+verdict::ExitStatus WritePicture(const std::string& path, const std::string& svg, bool quiet = false);
 
 /// `rondo: message`, for what went wrong outside any source file.
 void PrintFailure(const std::string& message);
+
+/// `exit 3`, for everything but success.
+void PrintStatus(verdict::ExitStatus status);
+
+/// While it lives, Ctrl-C requests a stop through the token; a second Ctrl-C ends the process at once. One at
+/// a time.
+class InterruptScope {
+ public:
+  explicit InterruptScope(const base::StopToken& stop);
+  InterruptScope(const InterruptScope&) = delete;
+  InterruptScope& operator=(const InterruptScope&) = delete;
+  ~InterruptScope();
+};
 
 /// A line that is overwritten in place; nothing if standard error is no terminal.
 class ProgressLine {

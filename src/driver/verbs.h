@@ -1,5 +1,7 @@
 #pragma once
 
+#include "verdict/verdict.h"
+
 namespace CLI {
 class App;
 }  // namespace CLI
@@ -7,21 +9,21 @@ class App;
 /// The verbs of the command line. Each adds itself to the application and leaves its exit status in `status`.
 namespace rondo::driver {
 
-void AddCheckVerb(CLI::App& app, int& status);
-void AddFormatVerb(CLI::App& app, int& status);
-void AddAstVerb(CLI::App& app, int& status);
-void AddInferVerb(CLI::App& app, int& status);
-void AddGraphVerb(CLI::App& app, int& status);
-void AddProjectVerb(CLI::App& app, int& status);
-void AddProveVerb(CLI::App& app, int& status);
-void AddExploreVerb(CLI::App& app, int& status);
-void AddSimulateVerb(CLI::App& app, int& status);
-void AddReplayVerb(CLI::App& app, int& status);
-void AddPlotVerb(CLI::App& app, int& status);
-void AddReachVerb(CLI::App& app, int& status);
-void AddSolveVerb(CLI::App& app, int& status);
-void AddCertifyVerb(CLI::App& app, int& status);
-void AddExplainVerb(CLI::App& app, int& status);
-void AddCompletionVerb(CLI::App& app, int& status);
+void AddCheckVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddFormatVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddAstVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddInferVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddGraphVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddProjectVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddProveVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddExploreVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddSimulateVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddReplayVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddPlotVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddReachVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddSolveVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddCertifyVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddExplainVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddCompletionVerb(CLI::App& app, verdict::ExitStatus& status);
 
 }  // namespace rondo::driver

@@ -39,9 +39,10 @@ std::vector<Port> FindPorts(const koord::Model& model, diag::Diagnostics& diagno
           .Report(diag::Kind::kKoordNotExecutable, variable.span,
                   fmt::format("no simulated robot has a port `{}` of type `{}`", variable.name,
                               types.Name(variable.type)))
-          .Help(sensor ? "sensors: `pos psn`, `pos velocity`, `float heading`, `bool reached`, `List<pos, "
-                         "Scan> pscan`"
-                       : "actuators: `pos target`, `List<pos> path`");
+          .Help(
+              sensor
+                  ? "sensors: `pos psn`, `pos velocity`, `float heading`, `bool reached`, `List<pos, Scan> pscan`"
+                  : "actuators: `pos target`, `List<pos> path`");
     }
   }
   return ports;

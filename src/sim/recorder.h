@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/fleet/fleet.h"
-#include "sim/library/grid_map.h"
+#include "sim/functions/grid_map.h"
 #include "trace/ros.h"
 
 namespace rondo::sim {

@@ -10,9 +10,9 @@
 #include <set>
 
 #include "base/parallel.h"
+#include "koord/semantics/machine/values.h"
 #include "koord/semantics/round_execution.h"
-#include "koord/semantics/values.h"
-#include "sim/library/functions.h"
+#include "sim/functions/functions.h"
 #include "sim/monitor.h"
 #include "sim/ports.h"
 #include "sim/recorder.h"
@@ -57,10 +57,10 @@ class Run {
     report_.ran = true;
     const double end = options_.duration > 0 ? options_.duration : fleet_.duration;
     const auto rounds = static_cast<uint64_t>(std::ceil(end / fleet_.delta - 1e-9));
-    report_.ended = "time";
-    for (uint64_t k = 0; k < rounds && report_.ended == "time"; ++k) {
+    report_.ended = Ending::kTime;
+    for (uint64_t k = 0; k < rounds && report_.ended == Ending::kTime; ++k) {
       if (options_.stop.StopRequested()) {
-        report_.ended = "interrupted";
+        report_.ended = Ending::kInterrupted;
         break;
       }
       Round(k);
@@ -314,7 +314,7 @@ class Run {
                       fmt::format("robot {} fails at t = {:.6g} s: {}", r, t, Describe(round.fault())))
               .Under(fmt::format("in event `{}`", team_->events()[event].def->name));
           recorder_.Event(t, {{"event", "fault"}, {"robot", r}, {"what", Describe(round.fault())}});
-          report_.ended = "failed";
+          report_.ended = Ending::kFailed;
           return;
       }
     }
@@ -455,7 +455,7 @@ class Run {
                 fmt::format("the state of `{}` is not finite behind t = {:.6g} s", who.name, t))
         .Under(fmt::format("model `{}` with these parameters", who.model))
         .Help("a smaller `step` in `[run]`, or other parameters, may help");
-    report_.ended = "failed";
+    report_.ended = Ending::kFailed;
     return false;
   }
 
@@ -534,11 +534,11 @@ class Run {
   }
 
   void After(double t) {
-    if (report_.ended == "failed") return;
+    if (report_.ended == Ending::kFailed) return;
     bool stopped = true;
     for (size_t r = 0; r < bodies_.size(); ++r)
       stopped = stopped && state_[team_->layout().block(r) + team_->layout().stopped()] != 0;
-    if (stopped && fleet_.until != "mapped") report_.ended = "stopped";
+    if (stopped && fleet_.until != "mapped") report_.ended = Ending::kStopped;
     const auto map = SharedMap();
     if (map && map->cells != last_map_) {
       last_map_ = map->cells;
@@ -552,7 +552,7 @@ class Run {
       const int column = map->Column(bodies_[0]->position()[0]);
       const int row = map->Row(bodies_[0]->position()[1]);
       if (!more && map->Inside(column, row) && map->At(column, row) == GridMap::kEmpty)
-        report_.ended = "mapped";
+        report_.ended = Ending::kMapped;
     }
     if (team_->heap().words_in_use() > collect_at_) {
       const std::span<const Word> roots[] = {state_, settled_};
@@ -599,7 +599,8 @@ class Run {
         }
       }
     }
-    recorder_.Event(report_.time, {{"event", "end"}, {"why", report_.ended}, {"rounds", report_.rounds}});
+    recorder_.Event(report_.time,
+                    {{"event", "end"}, {"why", Name(report_.ended)}, {"rounds", report_.rounds}});
   }
 
   const koord::Model& model_;
@@ -626,6 +627,22 @@ class Run {
 };
 
 }  // namespace
+
+std::string_view Name(Ending ending) {
+  switch (ending) {
+    case Ending::kTime:
+      return "time";
+    case Ending::kStopped:
+      return "stopped";
+    case Ending::kMapped:
+      return "mapped";
+    case Ending::kInterrupted:
+      return "interrupted";
+    case Ending::kFailed:
+      return "failed";
+  }
+  return "";
+}
 
 SimulationReport Simulate(const koord::Model& model, const Fleet& fleet, const SimulationOptions& options,
                           trace::Writer* trace, diag::Diagnostics& diagnostics) {

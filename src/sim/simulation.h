@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/stop.h"
@@ -23,6 +24,18 @@ struct SimulationOptions {
   std::function<void(double time, double end)> progress;
   base::StopToken stop;
 };
+
+/// Why a simulation ended.
+enum class Ending : uint8_t {
+  kTime,         ///< its time was over
+  kStopped,      ///< every robot stopped
+  kMapped,       ///< the map is complete
+  kInterrupted,  ///< somebody asked it to stop
+  kFailed,       ///< an operation of the program has no value
+};
+
+/// Returns `time`, `stopped`, `mapped`, `interrupted` or `failed`, as traces and JSON have it.
+std::string_view Name(Ending ending);
 
 /// Something that must not happen, and did.
 struct Violation {
@@ -46,7 +59,7 @@ struct SimulationReport {
   double least_to_obstacles = std::numeric_limits<double>::infinity();
   std::vector<Violation> violations;
   std::vector<std::string> unchecked;  ///< parts of the specification that runs are not checked against
-  std::string ended;                   ///< `time`, `stopped`, `mapped`, `interrupted`, `failed`
+  Ending ended = Ending::kTime;
   uint64_t plans = 0;
   uint64_t known_cells = 0;  ///< of the shared map, if there is one
   uint64_t wrong_cells = 0;

@@ -10,7 +10,7 @@
 
 #include "base/stop.h"
 #include "expr/arena.h"
-#include "expr/smtlib.h"
+#include "expr/smtlib/smtlib.h"
 #include "expr/value.h"
 
 /// One question, several engines: is there an interpretation that satisfies all assertions?

@@ -26,21 +26,41 @@ const Schema kPath{
     "nav_msgs/msg/Path", "ros2msg",
     "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n" RONDO_HEADER RONDO_TIME RONDO_SEPARATOR
     "MSG: geometry_msgs/PoseStamped\nstd_msgs/Header header\ngeometry_msgs/Pose pose\n" RONDO_POSE};
-const Schema kLaserScan{
-    "sensor_msgs/msg/LaserScan", "ros2msg",
-    "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 "
-    "time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] "
-    "intensities\n" RONDO_HEADER RONDO_TIME};
+const Schema kLaserScan{"sensor_msgs/msg/LaserScan", "ros2msg",
+                        "std_msgs/Header header\n"
+                        "float32 angle_min\n"
+                        "float32 angle_max\n"
+                        "float32 angle_increment\n"
+                        "float32 time_increment\n"
+                        "float32 scan_time\n"
+                        "float32 range_min\n"
+                        "float32 range_max\n"
+                        "float32[] ranges\n"
+                        "float32[] intensities\n" RONDO_HEADER RONDO_TIME};
 const Schema kMarkerArray{
     "visualization_msgs/msg/MarkerArray", "ros2msg",
     "visualization_msgs/Marker[] markers\n" RONDO_SEPARATOR
-    "MSG: visualization_msgs/Marker\nstd_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 "
-    "action\ngeometry_msgs/Pose pose\ngeometry_msgs/Vector3 scale\nstd_msgs/ColorRGBA "
-    "color\nbuiltin_interfaces/Duration lifetime\nbool frame_locked\ngeometry_msgs/Point[] "
-    "points\nstd_msgs/ColorRGBA[] colors\nstring texture_resource\nsensor_msgs/CompressedImage "
-    "texture\nvisualization_msgs/UVCoordinate[] uv_coordinates\nstring text\nstring "
-    "mesh_resource\nvisualization_msgs/MeshFile mesh_file\nbool mesh_use_embedded_materials\n" RONDO_HEADER
-        RONDO_TIME RONDO_DURATION RONDO_POSE RONDO_VECTOR RONDO_SEPARATOR
+    "MSG: visualization_msgs/Marker\n"
+    "std_msgs/Header header\n"
+    "string ns\n"
+    "int32 id\n"
+    "int32 type\n"
+    "int32 action\n"
+    "geometry_msgs/Pose pose\n"
+    "geometry_msgs/Vector3 scale\n"
+    "std_msgs/ColorRGBA color\n"
+    "builtin_interfaces/Duration lifetime\n"
+    "bool frame_locked\n"
+    "geometry_msgs/Point[] points\n"
+    "std_msgs/ColorRGBA[] colors\n"
+    "string texture_resource\n"
+    "sensor_msgs/CompressedImage texture\n"
+    "visualization_msgs/UVCoordinate[] uv_coordinates\n"
+    "string text\n"
+    "string mesh_resource\n"
+    "visualization_msgs/MeshFile mesh_file\n"
+    "bool mesh_use_embedded_materials\n" RONDO_HEADER RONDO_TIME RONDO_DURATION RONDO_POSE RONDO_VECTOR
+        RONDO_SEPARATOR
     "MSG: std_msgs/ColorRGBA\nfloat32 r\nfloat32 g\nfloat32 b\nfloat32 a\n" RONDO_SEPARATOR
     "MSG: sensor_msgs/CompressedImage\nstd_msgs/Header header\nstring format\nuint8[] data\n" RONDO_SEPARATOR
     "MSG: visualization_msgs/UVCoordinate\nfloat32 u\nfloat32 v\n" RONDO_SEPARATOR
@@ -49,9 +69,12 @@ const Schema kMarkerArray{
 const Schema kOccupancyGrid{
     "nav_msgs/msg/OccupancyGrid", "ros2msg",
     "std_msgs/Header header\nnav_msgs/MapMetaData info\nint8[] data\n" RONDO_HEADER RONDO_TIME RONDO_SEPARATOR
-    "MSG: nav_msgs/MapMetaData\nbuiltin_interfaces/Time map_load_time\nfloat32 resolution\nuint32 "
-    "width\nuint32 "
-    "height\ngeometry_msgs/Pose origin\n" RONDO_POSE};
+    "MSG: nav_msgs/MapMetaData\n"
+    "builtin_interfaces/Time map_load_time\n"
+    "float32 resolution\n"
+    "uint32 width\n"
+    "uint32 height\n"
+    "geometry_msgs/Pose origin\n" RONDO_POSE};
 
 namespace {
 

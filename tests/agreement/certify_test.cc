@@ -3,6 +3,7 @@
 
 #include "formulas.h"
 #include "solve/icp/icp_solver.h"
+#include "verdict/truth.h"
 
 namespace rondo::solve {
 namespace {
@@ -143,7 +144,7 @@ TEST(Certify, IsNotFooled) {
   EXPECT_FALSE(bad("(assert (< 0 n 1))(contradiction)"));
   EXPECT_TRUE(bad("(assert (< 0.0 x 1.0))(contradiction)"));
   EXPECT_TRUE(bad("(assert (<= 0 n 1))(fact (<= 0 n 1))(search (n) \"0 0.5 . .\")"));
-  // Truth values are 0 or 1.
+  // verdict::Truth values are 0 or 1.
   EXPECT_FALSE(bad("(assert b)(assert (not b))(contradiction)"));
   EXPECT_TRUE(bad("(assert b)(fact b)(search (b) \".\")"));
   // A bound that a double would round away.

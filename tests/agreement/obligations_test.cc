@@ -14,6 +14,7 @@
 #include "choreo/infer/regions.h"
 #include "choreo/prove/sampler.h"
 #include "robot/contact/contact.h"
+#include "verdict/verdict.h"
 
 namespace rondo::choreo {
 namespace {
@@ -60,10 +61,10 @@ Tally Count(const std::string& text, int milliseconds) {
     if (!IsRequired(o.kind)) continue;
     const Decision d = Decide(o, *checked.graphs[0].world, checked.arena, {}, Soon(milliseconds), {});
     const std::string kind(KindName(o.kind));
-    (d.verdict == Verdict::kProved    ? tally.right
-     : d.verdict == Verdict::kRefuted ? tally.wrong
-                                      : tally.open)[kind] += 1;
-    if (d.verdict == Verdict::kRefuted) tally.failures.push_back(kind + ": " + o.title);
+    (d.verdict == verdict::Verdict::kProved    ? tally.right
+     : d.verdict == verdict::Verdict::kRefuted ? tally.wrong
+                                               : tally.open)[kind] += 1;
+    if (d.verdict == verdict::Verdict::kRefuted) tally.failures.push_back(kind + ": " + o.title);
   }
   return tally;
 }

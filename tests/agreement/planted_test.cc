@@ -12,6 +12,7 @@
 
 #include "checked.h"
 #include "choreo/prove/prove.h"
+#include "verdict/verdict.h"
 
 namespace rondo::choreo {
 namespace {
@@ -192,8 +193,8 @@ Outcome OutcomeOf(const std::string& text) {
   Outcome result = Outcome::kProved;
   for (size_t i = 0; i < obligations.all.size(); ++i) {
     if (!IsRequired(obligations.all[i].kind)) continue;
-    if (proofs.all[i].decision.verdict == Verdict::kRefuted) return Outcome::kRefuted;
-    if (proofs.all[i].decision.verdict == Verdict::kUnknown) result = Outcome::kUnknown;
+    if (proofs.all[i].decision.verdict == verdict::Verdict::kRefuted) return Outcome::kRefuted;
+    if (proofs.all[i].decision.verdict == verdict::Verdict::kUnknown) result = Outcome::kUnknown;
   }
   return result;
 }

@@ -9,7 +9,8 @@
 #include <filesystem>
 #include <random>
 
-#include "driver/reachability.h"
+#include "contracts/decide.h"
+#include "contracts/load.h"
 
 namespace rondo {
 namespace {
@@ -26,16 +27,16 @@ bool IsLong(const std::string& contract) {
 }
 
 struct Loaded {
-  driver::Session session;
+  workspace::Session session;
   std::unique_ptr<driver::Motion> motion;
-  std::vector<driver::ContractResult> contracts;
+  std::vector<contracts::ContractResult> contracts;
 };
 
 std::unique_ptr<Loaded> Load(const std::string& file) {
   auto loaded = std::make_unique<Loaded>();
-  loaded->motion = driver::LoadMotion({file}, {}, loaded->session);
+  loaded->motion = workspace::LoadModule({file}, {}, loaded->session);
   if (loaded->motion && loaded->motion->declarations)
-    loaded->contracts = driver::ContractsOf(*loaded->motion);
+    loaded->contracts = contracts::ContractsOf(*loaded->motion);
   return loaded;
 }
 
@@ -111,7 +112,7 @@ class Audit : public testing::TestWithParam<std::string> {};
 TEST_P(Audit, NoTrajectoryLeavesItsTube) {
   const auto loaded = Load(GetParam());
   ASSERT_FALSE(loaded->contracts.empty());
-  for (driver::ContractResult& contract : loaded->contracts) {
+  for (contracts::ContractResult& contract : loaded->contracts) {
     const reach::Problem& problem = contract.made.problem;
     ASSERT_TRUE(contract.impossible.empty()) << problem.name << ": " << contract.impossible;
     if (IsLong(problem.name)) continue;
@@ -129,20 +130,20 @@ TEST_P(Audit, NoTrajectoryLeavesItsTube) {
     std::vector<Tube> tubes;
     for (const reach::Leaf& l : proved->leaves) tubes.emplace_back(l, problem.horizon.ToDouble());
     for (size_t number = 0; number < count; ++number) {
-      reach::Course course;
-      course.start = Draw(problem.initial, number, random);
-      course.input_period = problem.horizon.ToDouble() / 12;
+      reach::Execution execution;
+      execution.start = Draw(problem.initial, number, random);
+      execution.input_period = problem.horizon.ToDouble() / 12;
       for (int slot = 0; slot < 12 && !problem.inputs.empty(); ++slot) {
         std::vector<double> values;
         for (const reach::Input& i : problem.inputs)
           values.push_back(random() % 2 == 0 ? i.bounds.lo : i.bounds.hi);
-        course.inputs.push_back(values);
+        execution.inputs.push_back(values);
       }
-      const size_t leaf = LeafOf(*proved, course.start);
+      const size_t leaf = LeafOf(*proved, execution.start);
       ASSERT_LT(leaf, tubes.size()) << problem.name;
       bool escaped = false;
       const bool finished =
-          run.Run(course, problem.horizon.ToDouble() / 300, [&](double t, std::span<const double> x) {
+          run.Run(execution, problem.horizon.ToDouble() / 300, [&](double t, std::span<const double> x) {
             // A controller acts before the first segment begins.
             if (tubes[leaf].Holds(t, x) || (t == 0 && problem.controller)) return true;
             escaped = true;
@@ -172,33 +173,33 @@ INSTANTIATE_TEST_SUITE_P(Files, Audit, testing::ValuesIn(Files()),
 TEST(Symmetry, OtherPlacesKeepTheContract) {
   const auto loaded = Load("models/car.rondo");
   const std::string name = "Car: FollowLine(x0, y0, heading)";
-  const auto find = [&](const std::vector<driver::ContractResult>& all) {
+  const auto find = [&](const std::vector<contracts::ContractResult>& all) {
     return *std::ranges::find(all, name, [](const auto& r) { return r.made.problem.name; });
   };
-  const driver::ContractResult reduced = find(loaded->contracts);
+  const contracts::ContractResult reduced = find(loaded->contracts);
   EXPECT_EQ(reduced.anywhere, (std::vector<std::string>{"x0", "y0", "heading"}));
   const auto outcome = reach::Decide(reduced.made.problem, {}, base::StopToken());
   ASSERT_TRUE(outcome.ok() && std::holds_alternative<reach::Proved>(outcome.value()));
-  const driver::ContractResult whole = find(driver::ContractsOf(*loaded->motion, false));
+  const contracts::ContractResult whole = find(contracts::ContractsOf(*loaded->motion, false));
   auto trajectories = reach::Trajectories::Of(whole.made.problem);
   ASSERT_TRUE(trajectories.ok());
   auto run = std::move(trajectories).value();
   std::mt19937_64 random(20261123);
   size_t looked_at = 0;
   while (looked_at < Wanted() / 10) {
-    reach::Course course;
-    course.start = Draw(whole.made.problem.initial, 65, random);
+    reach::Execution execution;
+    execution.start = Draw(whole.made.problem.initial, 65, random);
     // Near its own line.
     const auto at = [&](const char* state) -> double& {
-      return course
+      return execution
           .start[static_cast<size_t>(std::ranges::find(whole.made.names, state) - whole.made.names.begin())];
     };
     at("x") = at("x0") + 0.1 * (static_cast<double>(random() >> 11) * 0x1p-52 - 1);
     at("y") = at("y0") + 0.1 * (static_cast<double>(random() >> 11) * 0x1p-52 - 1);
     at("theta") = at("heading") + 0.087 * (static_cast<double>(random() >> 11) * 0x1p-52 - 1);
-    if (run.MissAssumed(course.start) > 0) continue;
+    if (run.MissAssumed(execution.start) > 0) continue;
     ++looked_at;
-    const reach::Violation worst = run.Worst(course, 0.05, 0, 1e-10, base::StopToken());
+    const reach::Violation worst = run.Worst(execution, 0.05, 0, 1e-10, base::StopToken());
     ASSERT_LE(worst.miss, 0) << "heading " << at("heading");
   }
 }

@@ -10,17 +10,18 @@
 #include "robot/contact/contact.h"
 #include "robot/separation/numeric_set.h"
 #include "robot/separation/support.h"
+#include "verdict/verdict.h"
 
 namespace rondo {
 namespace {
 
-using choreo::Verdict;
 using expr::Arena;
 using expr::Rational;
 using expr::TermId;
 using robot::Pose;
 using robot::Shape;
 using robot::ShapeKind;
+using verdict::Verdict;
 
 TermId Number(Arena& arena, const Rational& r) { return arena.Number(arena.Real(), r); }
 TermId Number(Arena& arena, double d) {

@@ -1,6 +1,6 @@
 // The printed script means what the terms mean: an external solver reads it and agrees with Z3 in this
 // process.
-#include "expr/smtlib.h"
+#include "expr/smtlib/smtlib.h"
 
 #include <gtest/gtest.h>
 

@@ -52,7 +52,7 @@ def replays(rondo, folder):
         saved.write_text(json.dumps({**good, **change}))
         done = run(rondo, "replay", saved)
         check(done.returncode == 1, f"{what} is refused: {done.stdout}")
-    for text in ("", "{", '{"format": "rondo-course/1"}', '{"format": "rondo-course/1", "files": []}'):
+    for text in ("", "{", '{"format": "rondo-trajectory/1"}', '{"format": "rondo-trajectory/1", "files": []}'):
         saved.write_text(text)
         check(run(rondo, "replay", saved).returncode == 1, f"`{text}` is refused")
 

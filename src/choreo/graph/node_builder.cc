@@ -328,8 +328,7 @@ void NodeBuilder::CheckCoupling(const Stmt& s, const Node& fork, const Scope& sc
                                 graph_.NameOf(carrier)))
             .Note(fmt::format("nothing is assumed of where `{}` goes meanwhile", graph_.NameOf(carrier)))
             .Help(fmt::format(
-                "let the thread of `{0}` guarantee what this one assumes: `assume {0}.x == 0 m`, for "
-                "instance",
+                "let the thread of `{0}` guarantee what this one assumes: `assume {0}.x == 0 m`, for instance",
                 graph_.NameOf(carrier)));
       }
     }

@@ -10,6 +10,7 @@
 #include "choreo/prove/sampler.h"
 #include "expr/defined.h"
 #include "robot/separation/numeric_set.h"
+#include "verdict/verdict.h"
 
 namespace rondo::choreo {
 namespace {
@@ -282,7 +283,7 @@ class Inferring {
       limits.certificates = false;
       limits.time = std::min(limits.time, kPatience);
       const Decision d = Decide(o, *graph_.world, arena_, options_.engine, limits, stop_);
-      if (d.verdict == Verdict::kProved) continue;
+      if (d.verdict == verdict::Verdict::kProved) continue;
       if (d.witness.values.empty() || stop_.StopRequested()) return std::nullopt;
       holds = false;
       s.states.push_back(d.witness.values);

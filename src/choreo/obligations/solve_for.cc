@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "expr/polynomial.h"
-#include "robot/model/value.h"
+#include "robot/values/value.h"
 
 namespace rondo::choreo {
 

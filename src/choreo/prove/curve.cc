@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "robot/model/value.h"
+#include "robot/values/value.h"
 
 namespace rondo::choreo {
 

@@ -11,6 +11,7 @@
 #include "expr/defined.h"
 #include "expr/import.h"
 #include "robot/separation/cuts.h"
+#include "verdict/verdict.h"
 
 namespace rondo::choreo {
 namespace {
@@ -81,7 +82,7 @@ class Deciding {
     } else if (!Sizes() && !(limits_.separation && Separated())) {
       Points();
     }
-    if (decision_.verdict == Verdict::kRefuted && !obligation_.satisfiable) Reachable();
+    if (decision_.verdict == verdict::Verdict::kRefuted && !obligation_.satisfiable) Reachable();
     return std::move(decision_);
   }
 
@@ -110,7 +111,7 @@ class Deciding {
   }
 
   void Proved(Way way) {
-    decision_.verdict = Verdict::kProved;
+    decision_.verdict = verdict::Verdict::kProved;
     decision_.way = way;
   }
 
@@ -142,7 +143,7 @@ class Deciding {
   }
 
   void Undecided(const solve::Answer& answer) {
-    decision_.verdict = Verdict::kUnknown;
+    decision_.verdict = verdict::Verdict::kUnknown;
     decision_.certificates.clear();
     if (const auto* unknown = std::get_if<solve::Unknown>(&answer)) {
       decision_.reason = unknown->reason;
@@ -158,7 +159,7 @@ class Deciding {
     if (std::holds_alternative<solve::Sat>(answer)) return;
     decision_.certificates.clear();
     if (IsUnsat(answer)) return Proved(Way::kPoints);
-    decision_.verdict = Verdict::kUnknown;
+    decision_.verdict = verdict::Verdict::kUnknown;
     decision_.reason = "it fails, unless what is known of the other robots is contradictory";
   }
 
@@ -177,7 +178,7 @@ class Deciding {
     decision_.verdict = kept.verdict;
     decision_.way = Way::kCurve;
     decision_.reason = std::move(kept.why);
-    if (stop_.StopRequested() && kept.verdict == Verdict::kUnknown) decision_.reason = "out of time";
+    if (stop_.StopRequested() && kept.verdict == verdict::Verdict::kUnknown) decision_.reason = "out of time";
     decision_.certificates = std::move(kept.certificates);
     SetWitness(kept.values, true);
   }
@@ -189,7 +190,7 @@ class Deciding {
       Proved(Way::kPoints);
       SetWitness(answer);
     } else if (IsUnsat(answer)) {
-      decision_.verdict = Verdict::kRefuted;
+      decision_.verdict = verdict::Verdict::kRefuted;
     } else {
       Undecided(answer);
     }
@@ -201,12 +202,12 @@ class Deciding {
       solve::Answer answer = Ask(f, true);
       if (IsUnsat(answer)) continue;
       if (std::holds_alternative<solve::Sat>(answer)) {
-        decision_.verdict = Verdict::kRefuted;
+        decision_.verdict = verdict::Verdict::kRefuted;
         SetWitness(answer);
       } else if (const auto exact = std::holds_alternative<solve::DeltaSat>(answer)
                                         ? ExactPoint(arena_, f, PointOf(answer))
                                         : std::nullopt) {
-        decision_.verdict = Verdict::kRefuted;
+        decision_.verdict = verdict::Verdict::kRefuted;
         SetWitness(*exact, true);
       } else {
         Undecided(answer);
@@ -290,14 +291,14 @@ class Deciding {
         if (slack == 0 && !Exact(*meets_, near)) continue;
         solve::Answer answer = Ask(arena_.And(near), false);
         if (!std::holds_alternative<solve::Sat>(answer)) continue;
-        decision_.verdict = Verdict::kRefuted;
+        decision_.verdict = verdict::Verdict::kRefuted;
         SetWitness(answer);
         return;
       }
     }
     HasNone(robot::LocalFormulas(arena_, point_, *meeting_));
-    if (decision_.verdict == Verdict::kUnknown && meets_) SetWitness(*meets_);
-    if (decision_.verdict == Verdict::kRefuted) {
+    if (decision_.verdict == verdict::Verdict::kUnknown && meets_) SetWitness(*meets_);
+    if (decision_.verdict == verdict::Verdict::kRefuted) {
       // The point is in coordinates of a shape; the whole formula knows it in those of the world.
       PointInWorld(whole);
     }

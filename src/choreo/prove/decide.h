@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "choreo/obligations/obligations.h"
-#include "choreo/prove/verdict.h"
 #include "expr/numeric.h"
 #include "solve/icp/icp_solver.h"
+#include "verdict/verdict.h"
 
 /// Decides obligations.
 namespace rondo::choreo {
@@ -27,7 +27,7 @@ struct Witness {
 };
 
 struct Decision {
-  Verdict verdict = Verdict::kUnknown;
+  verdict::Verdict verdict = verdict::Verdict::kUnknown;
   Way way = Way::kPoints;
   Witness witness;     ///< kRefuted, or how close it came: the state at which nothing could be excluded
   double apart = 0;    ///< kUnknown, of shapes: at least this far apart there; negative: they overlap

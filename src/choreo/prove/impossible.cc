@@ -7,6 +7,7 @@
 
 #include "choreo/prove/curve_proof.h"
 #include "expr/defined.h"
+#include "verdict/verdict.h"
 
 namespace rondo::choreo {
 namespace {
@@ -20,7 +21,7 @@ KeepingVerdict Refuted(KeepingStart& s, std::string why, Numeric::Point at, cons
                        std::optional<Rational> moment = {}) {
   if (moment) at[s.clock()] = moment->ToDouble();
   Numeric number(s.arena(), at);
-  KeepingVerdict verdict{Verdict::kRefuted, std::move(why), {}, {}};
+  KeepingVerdict verdict{verdict::Verdict::kRefuted, std::move(why), {}, {}};
   for (const auto& [v, term] : value) verdict.values[v] = number(term);
   for (const auto& [v, x] : at) verdict.values.emplace(v, x);
   return verdict;
@@ -113,7 +114,7 @@ std::optional<KeepingVerdict> NeedsJump(KeepingStart& s, const std::vector<TermI
       if (!IsBarrier(s, v, middle, from < to)) continue;
       const std::string& name = s.arena().symbol(s.arena().symbol_of(v)).name;
       KeepingVerdict verdict{
-          Verdict::kRefuted, fmt::format("`{}` would have to jump over a value", name), {}, {}};
+          verdict::Verdict::kRefuted, fmt::format("`{}` would have to jump over a value", name), {}, {}};
       verdict.values[v] = middle.ToDouble();
       return verdict;
     }

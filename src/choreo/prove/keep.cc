@@ -8,6 +8,7 @@
 #include "choreo/obligations/solve_for.h"
 #include "choreo/prove/curve_proof.h"
 #include "choreo/prove/impossible.h"
+#include "verdict/verdict.h"
 
 namespace rondo::choreo {
 namespace {
@@ -35,7 +36,7 @@ class Keeper {
     std::vector<Rational> times{k_.most ? *k_.most : std::max(k_.least, Rational(1))};
     if (k_.chooses && k_.most && *k_.most != k_.least && !k_.least.IsZero()) times.push_back(k_.least);
     if (!k_.most && k_.ends && !k_.chooses)
-      return {Verdict::kUnknown,
+      return {verdict::Verdict::kUnknown,
               "nothing says how long it may take, and others have to keep on meanwhile",
               {},
               {}};
@@ -52,7 +53,10 @@ class Keeper {
     time_ = times.front();
     if (free_.empty()) {
       if (auto fails = DeterminedFails(s_, Straight(), determined_)) return *fails;
-      return {Verdict::kUnknown, "the curve that `during` determines could not be shown to keep it", {}, {}};
+      return {verdict::Verdict::kUnknown,
+              "the curve that `during` determines could not be shown to keep it",
+              {},
+              {}};
     }
     if (auto none = NoState(s_, determined_, kPieces)) return *none;
     if (auto far = TooFar(s_)) return *far;
@@ -62,11 +66,11 @@ class Keeper {
       }
     }
     if (auto jump = NeedsJump(s_, free_, end_, kPieces)) return *jump;
-    return {Verdict::kUnknown, "no curve was found that keeps it at every moment", {}, {}};
+    return {verdict::Verdict::kUnknown, "no curve was found that keeps it at every moment", {}, {}};
   }
 
  private:
-  KeepingVerdict Proved() { return {Verdict::kProved, {}, {}, s_.TakeCertificates()}; }
+  KeepingVerdict Proved() { return {verdict::Verdict::kProved, {}, {}, s_.TakeCertificates()}; }
   TermId Number(const Rational& r) { return s_.Number(r); }
   bool HasFree(TermId term) const {
     return std::ranges::any_of(free_, [&](TermId v) { return s_.Has(term, v); });
@@ -246,11 +250,11 @@ class Keeper {
 }  // namespace
 
 KeepingVerdict Keep(Arena& arena, const Keeping& keeping, TermId clock, const AskSolver& ask) {
-  KeepingVerdict all{Verdict::kProved, {}, {}, {}};
+  KeepingVerdict all{verdict::Verdict::kProved, {}, {}, {}};
   for (const TermId formula : keeping.starts) {
     KeepingStart start(arena, keeping, clock, formula, ask);
     KeepingVerdict one = Keeper(start).Run();
-    if (one.verdict != Verdict::kProved) return one;
+    if (one.verdict != verdict::Verdict::kProved) return one;
     std::ranges::move(one.certificates, std::back_inserter(all.certificates));
   }
   return all;

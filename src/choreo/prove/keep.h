@@ -3,12 +3,12 @@
 #include <string>
 
 #include "choreo/prove/keeping_start.h"
-#include "choreo/prove/verdict.h"
+#include "verdict/verdict.h"
 
 namespace rondo::choreo {
 
 struct KeepingVerdict {
-  Verdict verdict = Verdict::kUnknown;
+  verdict::Verdict verdict = verdict::Verdict::kUnknown;
   std::string why;                        ///< not kProved: what is in the way
   expr::Numeric::Point values;            ///< kRefuted: the moment, and the state that is in question
   std::vector<std::string> certificates;  ///< kProved: of all that had to be asked

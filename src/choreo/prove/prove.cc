@@ -11,6 +11,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "solve/certify/checker.h"
+#include "verdict/verdict.h"
 
 namespace rondo::choreo {
 namespace {
@@ -48,7 +49,7 @@ class Proving {
       const auto start = Clock::now();
       if (!options_.stop.StopRequested()) proof = One(obligation, i);
       proof.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-      proof.interrupted = proof.decision.verdict == Verdict::kUnknown && options_.stop.cancelled();
+      proof.interrupted = proof.decision.verdict == verdict::Verdict::kUnknown && options_.stop.cancelled();
       if (proof.interrupted) proof.decision.reason = "interrupted";
       const std::scoped_lock lock(mutex_);
       proofs_.all[i] = std::move(proof);
@@ -66,7 +67,7 @@ class Proving {
         const bool certified = proofs_.all[i].certified;
         const auto [it, fresh] = exact_.try_emplace(n, certified);
         if (!fresh) it->second = it->second && certified;
-        if (proofs_.all[i].decision.verdict != Verdict::kProved) open.insert(n);
+        if (proofs_.all[i].decision.verdict != verdict::Verdict::kProved) open.insert(n);
       }
     }
     for (const NodeId n : open) exact_.erase(n);
@@ -77,7 +78,7 @@ class Proving {
     std::map<NodeId, bool> never;  // whether that is certified
     for (size_t i = 0; i < proofs_.all.size(); ++i) {
       const Obligation& o = obligations_.all[i];
-      if (o.kind != ObligationKind::kReached || proofs_.all[i].decision.verdict != Verdict::kRefuted)
+      if (o.kind != ObligationKind::kReached || proofs_.all[i].decision.verdict != verdict::Verdict::kRefuted)
         continue;
       for (const NodeId n : o.nodes) never.emplace(n, proofs_.all[i].certified);
     }
@@ -86,8 +87,8 @@ class Proving {
       Decision& d = proofs_.all[i].decision;
       const bool there =
           !o.nodes.empty() && std::ranges::all_of(o.nodes, [&](NodeId n) { return never.contains(n); });
-      if (o.kind == ObligationKind::kReached || !there || d.verdict != Verdict::kRefuted) continue;
-      d.verdict = Verdict::kProved;
+      if (o.kind == ObligationKind::kReached || !there || d.verdict != verdict::Verdict::kRefuted) continue;
+      d.verdict = verdict::Verdict::kProved;
       d.reason.clear();
       proofs_.all[i].certified = std::ranges::all_of(o.nodes, [&](NodeId n) { return never.at(n); });
     }
@@ -105,7 +106,7 @@ class Proving {
     Proof proof;
     const auto exact = [&](NodeId n) { return exact_.contains(n); };
     if (obligation.bridge && std::ranges::all_of(obligation.nodes, exact)) {
-      proof.decision.verdict = Verdict::kProved;
+      proof.decision.verdict = verdict::Verdict::kProved;
       proof.certified = std::ranges::all_of(obligation.nodes, [&](NodeId n) { return exact_.at(n); });
       return proof;
     }
@@ -123,7 +124,7 @@ class Proving {
                                                                : "",
                                         certify ? "" : ", not certified", question);
     if (options_.cache != nullptr && options_.certificates.empty() && options_.cache->Find(key)) {
-      proof.decision.verdict = Verdict::kProved;
+      proof.decision.verdict = verdict::Verdict::kProved;
       proof.cached = true;
       proof.certified = certify;
       return proof;
@@ -135,12 +136,12 @@ class Proving {
       engine.lemmas = lemmas;
       proof.decision =
           choreo::Decide(obligation, *graph_.world, arena_, engine, options_.limits, options_.stop);
-      if (proof.decision.verdict != Verdict::kProved || !certify) break;
+      if (proof.decision.verdict != verdict::Verdict::kProved || !certify) break;
       rejected = Certify(proof, obligation, number);
       if (rejected.empty()) break;
     }
     if (!rejected.empty()) {
-      proof.decision.verdict = Verdict::kUnknown;
+      proof.decision.verdict = verdict::Verdict::kUnknown;
       proof.decision.reason = "its certificate was rejected";
       const std::scoped_lock lock(mutex_);
       proofs_.bug = true;
@@ -148,9 +149,10 @@ class Proving {
           fmt::format("the certificate of \"{}\" was rejected: {}", obligation.title, rejected));
     }
     // That a step never begins proves what would fail in it.
-    if (proof.decision.verdict == Verdict::kRefuted && obligation.kind == ObligationKind::kReached && certify)
+    if (proof.decision.verdict == verdict::Verdict::kRefuted && obligation.kind == ObligationKind::kReached &&
+        certify)
       Certify(proof, obligation, number);
-    if (proof.decision.verdict != Verdict::kProved) return proof;
+    if (proof.decision.verdict != verdict::Verdict::kProved) return proof;
     if (options_.cache != nullptr && proof.certified == certify)
       options_.cache->Store(key, {std::string(kEngine), {}});
     return proof;

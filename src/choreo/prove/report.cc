@@ -9,6 +9,7 @@
 #include <set>
 
 #include "robot/contact/contact.h"
+#include "verdict/verdict.h"
 
 namespace rondo::choreo {
 namespace {
@@ -67,9 +68,8 @@ std::string_view HelpFor(ObligationKind kind) {
     case ObligationKind::kRegion:
       return "make the region larger, or say more in `during` of the motion";
     case ObligationKind::kFork:
-      return "regions of threads have no point in common; such as only touch are apart if one of them is "
-             "open: "
-             "`z < 10 cm` and `z >= 10 cm`";
+      return "regions of threads have no point in common; such as only touch are apart if one of them is open: `z < 10 cm` and `z >= "
+             "10 cm`";
     case ObligationKind::kAssumption:
       return "another robot of this step has to promise it in `during`, without assumptions of its own";
     case ObligationKind::kGuarantee:
@@ -157,7 +157,7 @@ void ConfirmWitnesses(const Obligations& obligations, expr::Arena& arena, Proofs
     const Obligation& o = obligations.all[i];
     Proof& proof = proofs.all[i];
     const Witness& witness = proof.decision.witness;
-    if (o.keeping || proof.decision.verdict != Verdict::kRefuted || witness.values.empty()) continue;
+    if (o.keeping || proof.decision.verdict != verdict::Verdict::kRefuted || witness.values.empty()) continue;
     const auto deny = [&](const std::string& why) {
       proofs.bug = true;
       proofs.problems.push_back(fmt::format("the witness of \"{}\" is not confirmed: {}", o.failure, why));
@@ -186,7 +186,7 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
   for (size_t i = 0; i < obligations.all.size(); ++i) {
     const Obligation& o = obligations.all[i];
     const Decision& d = proofs.all[i].decision;
-    if (d.verdict == Verdict::kProved || o.kind == ObligationKind::kStart) continue;
+    if (d.verdict == verdict::Verdict::kProved || o.kind == ObligationKind::kStart) continue;
     // A motion that begins where it must not often cannot begin there either: that is one mistake.
     const auto follows = [&](size_t j) {
       const Obligation& p = obligations.all[j];
@@ -194,14 +194,15 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
       const bool own = o.keeping && p.kind == ObligationKind::kContract && p.nodes.empty() &&
                        !p.instances.empty() &&
                        std::ranges::find(o.instances, p.instances[0]) != o.instances.end();
-      if (own) return proofs.all[j].decision.verdict == Verdict::kRefuted;
+      if (own) return proofs.all[j].decision.verdict == verdict::Verdict::kRefuted;
       return p.kind == ObligationKind::kPrecondition && p.nodes == o.nodes &&
-             (o.keeping || p.instances == o.instances) && proofs.all[j].decision.verdict == Verdict::kRefuted;
+             (o.keeping || p.instances == o.instances) &&
+             proofs.all[j].decision.verdict == verdict::Verdict::kRefuted;
     };
     if ((o.kind == ObligationKind::kContract || o.keeping) && !o.nodes.empty() &&
         std::ranges::any_of(std::views::iota(size_t{0}, obligations.all.size()), follows))
       continue;
-    if (d.verdict == Verdict::kRefuted) {
+    if (d.verdict == verdict::Verdict::kRefuted) {
       diag::Diagnostic& report = diagnostics.Report(KindOf(o.kind), o.span, o.failure);
       if (!d.reason.empty()) report.Note(d.reason);
       Explain(graph, o, d.witness, report);
@@ -253,7 +254,7 @@ std::vector<std::string> AssumptionsOf(const Graph& graph, const std::set<std::s
         "motions of one step that cannot be interrupted end at the same moment (equal_durations)");
   for (size_t i = 0; i < obligations.all.size(); ++i) {
     if (obligations.all[i].kind == ObligationKind::kStart && !proofs.all[i].interrupted &&
-        proofs.all[i].decision.verdict != Verdict::kProved)
+        proofs.all[i].decision.verdict != verdict::Verdict::kProved)
       result.push_back(obligations.all[i].failure);
   }
   return result;

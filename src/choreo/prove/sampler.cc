@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robot/model/value.h"
+#include "robot/values/value.h"
 
 namespace rondo::choreo {
 

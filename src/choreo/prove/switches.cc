@@ -4,7 +4,7 @@
 #include <unordered_set>
 
 #include "choreo/obligations/solve_for.h"
-#include "robot/model/value.h"
+#include "robot/values/value.h"
 
 namespace rondo::choreo {
 

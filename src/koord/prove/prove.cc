@@ -8,10 +8,11 @@
 
 #include "base/file.h"
 #include "base/parallel.h"
-#include "expr/smtlib.h"
+#include "expr/smtlib/smtlib.h"
 #include "koord/check/spec_labels.h"
+#include "koord/prove/obligations/task.h"
 #include "koord/prove/report.h"
-#include "koord/prove/task.h"
+#include "verdict/verdict.h"
 
 namespace rondo::koord {
 namespace {
@@ -229,15 +230,15 @@ class Prover {
   }
 
   static Cell MakeCell(const Task& task, std::string column, std::optional<size_t> action) {
-    Cell cell{std::move(column), action, Outcome::kUnknown, {}, {}, task.seconds};
+    Cell cell{std::move(column), action, verdict::Verdict::kUnknown, {}, {}, task.seconds};
     if (const auto* unsat = std::get_if<solve::Unsat>(&task.answer)) {
-      cell.outcome = Outcome::kProved;
+      cell.verdict = verdict::Verdict::kProved;
       cell.core = unsat->core;
     } else if (const auto* unknown = std::get_if<solve::Unknown>(&task.answer)) {
       cell.reason = unknown->reason;
       cell.timed_out = unknown->timed_out;
     } else {
-      cell.outcome = Outcome::kFailed;
+      cell.verdict = verdict::Verdict::kRefuted;
     }
     return cell;
   }
@@ -245,7 +246,7 @@ class Prover {
   void MakeRows(Problems& problems) {
     const std::vector<std::string>& actions = problems.round().actions();
     for (size_t i = 0; i < problems.theory().invariants(); ++i)
-      report_.rows.push_back({InvariantName(model_, i), {}, {}, {}, {}});
+      report_.rows.push_back({InvariantName(model_, i), model_.invariants[i]->span, {}, {}, {}, {}});
     Row defined{"well-defined", {}, {}, {}, {}};
     for (const Task& task : tasks_) {
       if (task.kind == TaskKind::kInitially)
@@ -327,23 +328,24 @@ class Prover {
     for (const SummaryDef* def : model_.summaries) stated.emplace_back(SummaryName(*def), def->span);
     for (const auto& [name, span] : stated) {
       if (used.contains(name)) {
-        if (std::find(report_.assumed.begin(), report_.assumed.end(), name) == report_.assumed.end())
-          report_.assumed.push_back(name);
+        if (std::find(report_.basis.assumed.begin(), report_.basis.assumed.end(), name) ==
+            report_.basis.assumed.end())
+          report_.basis.assumed.push_back(name);
       } else if (report_.AllProved()) {
-        report_.unused.push_back(name);
+        report_.basis.unused.push_back(name);
         diagnostics_.Report(diag::Kind::kKoordUnusedAssumption, span,
                             fmt::format("no proof uses `{}`", name));
       }
     }
     const bool proved = std::any_of(report_.rows.begin(), report_.rows.end(),
-                                    [](const Row& r) { return r.verdict == Verdict::kProved; });
+                                    [](const Row& r) { return r.verdict == verdict::Verdict::kProved; });
     if (proved && UsesFloatArithmetic(model_))
-      report_.assumed.push_back("floats are exact (on robots, doubles round)");
+      report_.basis.assumed.push_back("floats are exact (on robots, doubles round)");
     report_.unconstrained = problems.theory().External(false);
     std::vector<std::string> functions = report_.unconstrained;
     for (std::string& f : problems.theory().External(true)) functions.push_back(std::move(f));
     if (proved && !functions.empty())
-      report_.assumed.push_back(
+      report_.basis.assumed.push_back(
           fmt::format("the same result for the same arguments of {}", fmt::join(functions, ", ")));
   }
 
@@ -361,12 +363,13 @@ class Prover {
 
 bool Report::AllProved() const {
   return !contradiction && !disagreement && !rows.empty() &&
-         std::all_of(rows.begin(), rows.end(), [](const Row& r) { return r.verdict == Verdict::kProved; });
+         std::all_of(rows.begin(), rows.end(),
+                     [](const Row& r) { return r.verdict == verdict::Verdict::kProved; });
 }
 
 bool Report::AnyFailed() const {
   return contradiction || std::any_of(rows.begin(), rows.end(), [](const Row& r) {
-           return r.verdict == Verdict::kRefuted || r.verdict == Verdict::kNotInductive;
+           return r.verdict == verdict::Verdict::kRefuted || r.verdict == verdict::Verdict::kNotInductive;
          });
 }
 

@@ -7,6 +7,7 @@
 
 #include "koord/check/spec_labels.h"
 #include "koord/prove/witness_replay.h"
+#include "verdict/verdict.h"
 
 namespace rondo::koord {
 
@@ -92,9 +93,8 @@ void Reporter::Unrealisable(size_t p) {
                 fmt::format("`{}` promises at once what need not hold yet", promise.name))
         .Under("its condition can be true while its promise is false")
         .Note(
-            "the promise must hold at every moment after the program transition, the first one included;\na "
-            "controller "
-            "that starts where it is false has broken it already")
+            "the promise must hold at every moment after the program transition, the first one included;\n"
+            "a controller that starts where it is false has broken it already")
         .Help("strengthen the condition, or add an invariant that excludes such a state");
     return;
   }
@@ -109,7 +109,7 @@ void Reporter::Failures() {
   for (size_t i = 0; i < report_.rows.size(); ++i) {
     Row& row = report_.rows[i];
     const auto open = std::find_if(row.cells.begin(), row.cells.end(),
-                                   [](const Cell& c) { return c.outcome != Outcome::kProved; });
+                                   [](const Cell& c) { return c.verdict != verdict::Verdict::kProved; });
     if (open == row.cells.end()) continue;
     if (i < model_.invariants.size()) {
       FailedInvariant(i);
@@ -125,7 +125,7 @@ void Reporter::FailedInvariant(size_t i) {
   const InvariantDef& def = *model_.invariants[i];
   const auto it = witnesses_.find(i);
   const bool confirmed = it != witnesses_.end() && it->second.confirmed;
-  const auto open = [](const Cell& c) { return c.outcome != Outcome::kProved; };
+  const auto open = [](const Cell& c) { return c.verdict != verdict::Verdict::kProved; };
   auto failed = row.cells.end();
   if (confirmed) {
     const auto breaks = [&](const Cell& c) { return open(c) && c.action == it->second.action; };
@@ -135,7 +135,7 @@ void Reporter::FailedInvariant(size_t i) {
   }
   for (auto cell = row.cells.begin(); cell != row.cells.end(); ++cell) {
     if (!open(*cell)) continue;
-    cell->outcome = cell == failed ? Outcome::kFailed : Outcome::kUnknown;
+    cell->verdict = cell == failed ? verdict::Verdict::kRefuted : verdict::Verdict::kUnknown;
     if (cell != failed && cell->reason.empty())
       cell->reason = "a possible counterexample could not be confirmed";
   }
@@ -153,7 +153,7 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
   const WitnessReplay replay = ReplayWitness(model_, index, witness.state);
   if (replay.outcome == ReplayOutcome::kDiffers) {
     report_.disagreement = true;
-    row.verdict = Verdict::kUnknown;
+    row.verdict = verdict::Verdict::kUnknown;
     row.because = "the counterexample does not replay: " + replay.why;
     diagnostics_
         .Report(Kind::kKoordDisagreement, def.span,
@@ -168,7 +168,7 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
   const std::string size = fmt::format("N_sys = {}", witness.robots);
   const std::optional<size_t> action = witness.action;
   if (!action) {
-    row.verdict = Verdict::kRefuted;
+    row.verdict = verdict::Verdict::kRefuted;
     diagnostics_
         .Report(Kind::kKoordRefuted, required, fmt::format("`{}` is false in an initial state", row.name))
         .Under("required here")
@@ -177,7 +177,7 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
         .Help("give variables initial values, or state what holds at the start: `assume initially: ...`");
     return;
   }
-  row.verdict = witness.reachable ? Verdict::kRefuted : Verdict::kNotInductive;
+  row.verdict = witness.reachable ? verdict::Verdict::kRefuted : verdict::Verdict::kNotInductive;
   const Kind kind = witness.reachable ? Kind::kKoordRefuted : Kind::kKoordNotInductive;
   const std::string who =
       *action == 0 ? "the environment" : fmt::format("`{}`", model_.events[*action - 1]->name);
@@ -198,8 +198,7 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
                                                          : "not replayed: " + replay.why);
   if (!witness.reachable)
     report.Note(
-        "this state may be unreachable: the induction could not exclude it; `rondo prove --reach 6` "
-        "looks for a run to it");
+        "this state may be unreachable: the induction could not exclude it; `rondo prove --reach 6` looks for a run to it");
   if (witness.environment) {
     report.Help("say what the controller guarantees: `assume M when ... always ...`");
   } else if (!witness.reachable) {
@@ -221,8 +220,8 @@ void Reporter::FailedDefinedness(Cell& cell, size_t place) {
         const solve::Budget budget{std::min(options_.timeout, std::chrono::milliseconds(2000)), false};
         if (!std::holds_alternative<solve::Sat>(options_.solver->Check(query, budget, options_.stop)))
           continue;
-        row.verdict = Verdict::kNotInductive;
-        cell.outcome = Outcome::kFailed;
+        row.verdict = verdict::Verdict::kNotInductive;
+        cell.verdict = verdict::Verdict::kRefuted;
         diagnostics_.Report(Kind::kKoordUndefinedOperation, check.span, Describe(check.kind))
             .Under(fmt::format("for robot {} of {}, in a state that satisfies every invariant", r, n))
             .Help("guard the operation, or add an invariant that excludes the state");
@@ -234,15 +233,15 @@ void Reporter::FailedDefinedness(Cell& cell, size_t place) {
 }
 
 void Reporter::Undecided(Row& row, const Cell& cell, Span span, const Witness* candidate) {
-  row.verdict = Verdict::kUnknown;
+  row.verdict = verdict::Verdict::kUnknown;
   auto& report = diagnostics_.Report(Kind::kKoordUnknown, span,
                                      fmt::format("`{}` could not be decided {}", row.name, Scope()));
   report.Under(fmt::format("obligation `{}`", cell.column));
   if (candidate != nullptr) {
-    report.Note(
-        fmt::format("a possible counterexample (N_sys = {}), not checked against every value that the "
-                    "functions may take:\n{}",
-                    candidate->robots, candidate->table));
+    report.Note(fmt::format(
+        "a possible counterexample (N_sys = {}), not checked against every value that the functions may take:\n"
+        "{}",
+        candidate->robots, candidate->table));
     report.Help("state more of what the functions and ports guarantee, if this cannot happen");
   } else {
     report.Note(fmt::format("{}: {}", options_.solver->name(), cell.reason));
@@ -261,7 +260,7 @@ void Reporter::Undecided(Row& row, const Cell& cell, Span span, const Witness* c
 void Reporter::Verdicts() {
   if (report_.contradiction || report_.interrupted || report_.disagreement) {
     for (Row& row : report_.rows) {
-      row.verdict = Verdict::kUnknown;
+      row.verdict = verdict::Verdict::kUnknown;
       row.because = report_.contradiction ? "the assumptions contradict each other"
                     : report_.interrupted ? "interrupted"
                                           : "solvers disagree";
@@ -271,7 +270,7 @@ void Reporter::Verdicts() {
   std::set<std::string> standing;
   const auto all_proved = [](const Row& row) {
     return std::all_of(row.cells.begin(), row.cells.end(),
-                       [](const Cell& c) { return c.outcome == Outcome::kProved; });
+                       [](const Cell& c) { return c.verdict == verdict::Verdict::kProved; });
   };
   // What operations mean where they are undefined is open, so a step proof is worth what the row
   // `well-defined` is worth.
@@ -305,9 +304,9 @@ void Reporter::Verdicts() {
     Row& row = report_.rows[i];
     const std::string name = i < model_.invariants.size() ? "invariant " + row.name : defined;
     if (standing.contains(name)) {
-      row.verdict = Verdict::kProved;
+      row.verdict = verdict::Verdict::kProved;
     } else if (fell.contains(name)) {
-      row.verdict = Verdict::kConditional;
+      row.verdict = verdict::Verdict::kConditional;
       row.because = fmt::format("its proof uses {}, which is not proved", fell[name]);
     }
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "koord/prove/problem.h"
+#include "koord/prove/obligations/problem.h"
 #include "koord/prove/prove.h"
 #include "koord/prove/witness.h"
 

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "expr/substitute.h"
-#include "koord/prove/distances.h"
+#include "koord/prove/obligations/distances.h"
 #include "koord/prove/text_table.h"
 
 namespace rondo::koord {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "koord/prove/problem.h"
-#include "koord/prove/prove.h"
+#include "koord/prove/obligations/problem.h"
+#include "koord/prove/results.h"
 
 namespace rondo::koord {
 

@@ -2,8 +2,9 @@
 
 #include <string>
 
-#include "koord/prove/prove.h"
-#include "koord/semantics/heap.h"
+#include "koord/check/model.h"
+#include "koord/prove/results.h"
+#include "koord/semantics/machine/heap.h"
 
 namespace rondo::koord {
 

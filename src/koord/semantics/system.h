@@ -6,7 +6,7 @@
 
 #include "explore/transition_system.h"
 #include "koord/semantics/environment.h"
-#include "koord/semantics/packing.h"
+#include "koord/semantics/machine/packing.h"
 #include "koord/semantics/program_transition.h"
 
 namespace rondo::koord::semantics {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "koord/check/spec_labels.h"
-#include "koord/semantics/values.h"
+#include "koord/semantics/machine/values.h"
 
 namespace rondo::koord::semantics {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "diag/diagnostic.h"
-#include "koord/semantics/compiler.h"
-#include "koord/semantics/machine.h"
+#include "koord/semantics/compile/compiler.h"
+#include "koord/semantics/machine/machine.h"
 
 namespace rondo::koord::semantics {
 

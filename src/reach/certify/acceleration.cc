@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "reach/certify/model.h"
-#include "reach/certify/upward.h"
+#include "reach/certify/models/model.h"
+#include "reach/certify/models/upward.h"
 
 namespace rondo::reach::certify {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reach/certify/linearise.h"
+#include "reach/certify/models/linearise.h"
 #include "reach/certify/step.h"
 
 namespace rondo::reach::certify {

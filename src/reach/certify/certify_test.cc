@@ -4,9 +4,9 @@
 #include <random>
 
 #include "reach/certify/checker.h"
-#include "reach/certify/errors.h"
-#include "reach/certify/reach_set.h"
-#include "reach/system/numeric.h"
+#include "reach/certify/models/errors.h"
+#include "reach/certify/models/reach_set.h"
+#include "reach/problem/numeric.h"
 
 namespace rondo::reach::certify {
 namespace {
@@ -205,7 +205,9 @@ class Problems : public testing::Test {
   static Certificate Even(double length, size_t degree = 3) {
     return {{{{}, {{.length = length, .degree = degree}}}}};
   }
-  static Verdict Checked(const Problem& p, const Certificate& c) { return Check(p, c, 1, base::StopToken()); }
+  static Acceptance Checked(const Problem& p, const Certificate& c) {
+    return Check(p, c, 1, base::StopToken());
+  }
 
   expr::Arena arena_;
 };
@@ -248,9 +250,9 @@ TEST_F(Problems, AreNeverAcceptedWhereTrajectoriesBreakThem) {
       const auto end = [&](Interval i) {
         return sample < 8 ? (random() % 2 == 0 ? i.lo : i.hi) : Uniform(random, i.lo, i.hi);
       };
-      Course course{{end(p.initial[0]), end(p.initial[1])}, {}, 0.1};
-      for (int k = 0; k < 10; ++k) course.inputs.push_back({end(p.inputs[0].bounds)});
-      run.Run(course, 0.01, [&](double, std::span<const double> state) {
+      Execution execution{{end(p.initial[0]), end(p.initial[1])}, {}, 0.1};
+      for (int k = 0; k < 10; ++k) execution.inputs.push_back({end(p.inputs[0].bounds)});
+      run.Run(execution, 0.01, [&](double, std::span<const double> state) {
         most = std::max(most, round % 3 == 0 ? state[0] + state[1] : state[0]);
         return true;
       });

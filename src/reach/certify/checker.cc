@@ -84,9 +84,9 @@ std::string CheckPart(System& system, Bases& bases, const Part& part, size_t dep
 
 }  // namespace
 
-Verdict Check(const Problem& problem, const Certificate& certificate, unsigned jobs,
-              const base::StopToken& stop) {
-  Verdict verdict;
+Acceptance Check(const Problem& problem, const Certificate& certificate, unsigned jobs,
+                 const base::StopToken& stop) {
+  Acceptance verdict;
   auto made = System::Of(problem);
   if (!made.ok()) {
     verdict.reason = made.error().message;

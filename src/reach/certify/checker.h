@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/stop.h"
-#include "reach/system/problem.h"
+#include "reach/problem/problem.h"
 
 /// The independent checker of reachability proofs. It shares with the engine that finds them what a problem
 /// is and means (`reach/system`) and interval arithmetic (`interval`), nothing else.
@@ -45,18 +45,18 @@ struct Certificate {
   std::vector<PartRecord> parts;
 };
 
-struct Verdict {
+struct Acceptance {
   bool accepted = false;
   std::string reason;  ///< why not
   size_t steps = 0;
 };
 
-/// Shows again that every claim of the problem holds on every course that begins in the initial set.
+/// Shows again that every claim of the problem holds on every trajectory that begins in the initial set.
 ///
 /// Each step is shown after the fact: a polynomial in the initial state and time is found in any way, and
 /// bounded is by how much it fails to solve the differential equation (its defect), and how errors grow.
 /// Guarantee: what is accepted holds. Cost: some times that of the proof.
-Verdict Check(const Problem& problem, const Certificate& certificate, unsigned jobs,
-              const base::StopToken& stop);
+Acceptance Check(const Problem& problem, const Certificate& certificate, unsigned jobs,
+                 const base::StopToken& stop);
 
 }  // namespace rondo::reach::certify

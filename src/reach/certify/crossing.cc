@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "reach/certify/follower.h"
+#include "verdict/truth.h"
 
 namespace rondo::reach::certify {
 
@@ -29,9 +30,10 @@ bool IsCrude(const ReachSet& set, const Step& step, double share) {
 }  // namespace
 
 // With a time q(s) for each start: the flow of q f over one unit of time leads to about where the condition
-// begins to hold. A course meets it at most |g| / m sooner or later, where g is its term there and -m bounds
-// g' all around; so after q(s), every course is one of the mode after, from a state that is at most
-// |g| / m * |f - f'| away. After some more time for all, the flow of (W - q) f' leads them to one instant.
+// begins to hold. A trajectory meets it at most |g| / m sooner or later, where g is its term there and -m
+// bounds g' all around; so after q(s), every trajectory is one of the mode after, from a state that is at
+// most |g| / m * |f - f'| away. After some more time for all, the flow of (W - q) f' leads them to one
+// instant.
 bool Follower::Cross(Place& place, const PartRecord::Step& record) {
   const ModeGuard* guard = nullptr;
   for (const ModeGuard& g : place.in->guards) {
@@ -141,7 +143,7 @@ bool Follower::Switch(Place& place, const Event& event) {
   if (!image.Of(before.observed, place.set, before.dynamics.inputs))
     return Fail("the condition of an event is not defined");
   const double term = Magnitude(image.Range(output));
-  // A box that no course leaves within twice the time by which the event may be early or late.
+  // A box that no trajectory leaves within twice the time by which the event may be early or late.
   const interval::Box start = place.set.Box();
   interval::Box box = start;
   interval::Box rates(n);
@@ -206,16 +208,16 @@ bool Follower::HoldsAround(const Place& place, const ModeSystem& in, const Reach
       if (!guard.formula.ComesDownTo(*event.term, own)) return Fail("several comparisons decide an event");
     } else if (&in != event.before.get() && Returns(event, guard)) {
       continue;  // Switch has looked at it
-    } else if (guard.formula.Check(own) != Truth::kFalse) {
+    } else if (guard.formula.Check(own) != verdict::Truth::kFalse) {
       return Fail("another event may happen");
     }
   }
   for (const ModeClaim& claim : in.claims) {
     if (!IsDue(place, claim)) continue;
-    const Truth truth = claim.formula.Check([&](size_t atom) {
+    const verdict::Truth truth = claim.formula.Check([&](size_t atom) {
       return claim.implied[atom] ? AtMostZero(range(claim.first + atom)) : range(claim.first + atom);
     });
-    if (truth != Truth::kTrue) return Fail("`" + claim.claim->name + "` is not shown");
+    if (truth != verdict::Truth::kTrue) return Fail("`" + claim.claim->name + "` is not shown");
   }
   return true;
 }

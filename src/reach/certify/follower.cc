@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "verdict/truth.h"
+
 namespace rondo::reach::certify {
 
 namespace {
@@ -164,7 +166,7 @@ bool Follower::Settle(Place& place) {
       for (const ModeGuard& guard : place.in->guards) {
         if (place.in->modes[guard.mode] != p.mode) continue;
         const auto range = [&](size_t atom) { return image.Range(guard.first + atom); };
-        if (guard.formula.Check(range) != Truth::kFalse) add({guard.after, {}});
+        if (guard.formula.Check(range) != verdict::Truth::kFalse) add({guard.after, {}});
         stays = stays && !HoldsOn(guard, range);
       }
       if (stays) add(p);
@@ -266,11 +268,11 @@ bool Follower::AtInstant(const Place& place, bool start) {
       if (!image->Of(place.in->observed, place.set, place.in->dynamics.inputs))
         return Fail("a claim is not defined on the whole set");
     }
-    const Truth truth = claim.formula.Check([&](size_t atom) {
+    const verdict::Truth truth = claim.formula.Check([&](size_t atom) {
       const Interval range = image->Range(claim.first + atom);
       return (start && claim.starts_below[atom]) || claim.implied[atom] ? AtMostZero(range) : range;
     });
-    if (truth != Truth::kTrue) return Fail(fmt::format("`{}` is not shown", claim.claim->name));
+    if (truth != verdict::Truth::kTrue) return Fail(fmt::format("`{}` is not shown", claim.claim->name));
   }
   return true;
 }

@@ -9,7 +9,7 @@
 
 #include "base/stop.h"
 #include "reach/certify/checker.h"
-#include "reach/certify/image.h"
+#include "reach/certify/models/image.h"
 #include "reach/certify/observation.h"
 #include "reach/certify/system.h"
 

@@ -3,7 +3,8 @@
 #include <cmath>
 
 #include "reach/certify/acceleration.h"
-#include "reach/system/bounds.h"
+#include "reach/problem/bounds.h"
+#include "verdict/truth.h"
 
 namespace rondo::reach::certify {
 
@@ -49,8 +50,9 @@ const OnBox* Observation::Slopes() {
 
 bool Observation::IsFalse(const ModeGuard& guard) {
   const auto coarse = [&](size_t atom) { return coarse_[in_.observed.outputs[guard.first + atom]]; };
-  if (guard.formula.Check(coarse) == Truth::kFalse) return true;
-  return guard.formula.Check([&](size_t atom) { return Range(guard.first + atom, 0, 1); }) == Truth::kFalse;
+  if (guard.formula.Check(coarse) == verdict::Truth::kFalse) return true;
+  return guard.formula.Check([&](size_t atom) { return Range(guard.first + atom, 0, 1); }) ==
+         verdict::Truth::kFalse;
 }
 
 std::function<Interval(size_t)> Observation::RangesOf(const ModeGuard& guard) {
@@ -62,7 +64,7 @@ bool Observation::Holds(const ModeClaim& claim, const std::vector<bool>& below) 
   const auto coarse = [&](size_t atom) {
     return known(atom, coarse_[in_.observed.outputs[claim.first + atom]]);
   };
-  if (claim.formula.Check(coarse) == Truth::kTrue) return true;
+  if (claim.formula.Check(coarse) == verdict::Truth::kTrue) return true;
   // Slices of the step's time, until it is shown on each.
   std::vector<std::pair<double, double>> open{{0, 1}};
   while (!open.empty()) {
@@ -71,7 +73,7 @@ bool Observation::Holds(const ModeClaim& claim, const std::vector<bool>& below) 
     const auto range = [from = begin, to = end, &known, &claim, this](size_t atom) {
       return known(atom, Range(claim.first + atom, from, to));
     };
-    if (claim.formula.Check(range) == Truth::kTrue) continue;
+    if (claim.formula.Check(range) == verdict::Truth::kTrue) continue;
     if (end - begin < std::ldexp(1.5, -kMostSlices)) return false;
     const double middle = 0.5 * (begin + end);
     open.emplace_back(middle, end);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "reach/certify/system.h"
+#include "verdict/truth.h"
 
 namespace rondo::reach::certify {
 
@@ -15,8 +16,8 @@ class Observation {
   std::function<Interval(size_t)> RangesOf(const ModeGuard& guard);
   /// Does the claim hold at all times of the step? `below`: terms that are known to be at most zero.
   bool Holds(const ModeClaim& claim, const std::vector<bool>& below);
-  /// Does a term that is at most zero when the step begins stay so? If g' <= r g along every course, for some
-  /// number r, then g(t) <= exp(r t) g(0).
+  /// Does a term that is at most zero when the step begins stay so? If g' <= r g along every trajectory, for
+  /// some number r, then g(t) <= exp(r t) g(0).
   bool StaysBelow(size_t output);
   /// Encloses the derivative of a term, per second; everything if it depends on inputs, which jump.
   Interval Slope(size_t output);
@@ -43,11 +44,11 @@ class Observation {
 /// @param range  of the condition's terms.
 template <typename Range>
 bool HoldsOn(const ModeGuard& guard, const Range& range) {
-  const Truth truth = guard.formula.Check([&](size_t atom) {
+  const verdict::Truth truth = guard.formula.Check([&](size_t atom) {
     const Interval r = range(atom);
     return r.hi == 0 ? Interval{r.lo, 0x1p-1000} : r;
   });
-  return truth == Truth::kTrue;
+  return truth == verdict::Truth::kTrue;
 }
 
 /// The range of a term that is known to be at most zero.

@@ -1,8 +1,8 @@
 // Several modes are possible at once: it is not certain which events happen.
 //
-// A course is in a mode for some time, or leaves it at the instant at which it enters it. While it is in a
-// mode, no condition of the mode's events holds for longer than an instant: a term h with the condition `h <=
-// 0` or `h < 0` is not negative, nor zero for longer than an instant. So an event that ends some time in a
+// A trajectory is in a mode for some time, or leaves it at the instant at which it enters it. While it is in
+// a mode, no condition of the mode's events holds for longer than an instant: a term h with the condition `h
+// <= 0` or `h < 0` is not negative, nor zero for longer than an instant. So an event that ends some time in a
 // mode does it where h falls to zero.
 #include <algorithm>
 
@@ -43,12 +43,12 @@ std::optional<std::vector<Follower::Possible>> Follower::Quiet(const Place& plac
 std::optional<std::vector<Follower::Possible>> Follower::Reached(const ModeSystem& in, Observation& seen,
                                                                  std::vector<Possible> before) {
   // A possibility, and, if the mode was entered in this step, the comparison that became true then.
-  struct Course {
+  struct Branch {
     Possible now;
     const ModeGuard* by = nullptr;
     bool entered = false;
   };
-  std::vector<Course> courses;
+  std::vector<Branch> branches;
   for (Possible& p : before) {
     // What rises goes on rising in each step during which it accelerates, or is not known to.
     std::erase_if(p.rising, [&](TermId term) {
@@ -56,27 +56,27 @@ std::optional<std::vector<Follower::Possible>> Follower::Reached(const ModeSyste
         return g.IsComparison() && g.formula.terms[0] == term && seen.Acceleration(g.first).lo > 0;
       });
     });
-    courses.push_back({p, nullptr, false});
+    branches.push_back({p, nullptr, false});
   }
   const auto is_strict = [](const ModeGuard& g) { return g.formula.nodes[g.formula.root].strict; };
-  for (size_t at = 0; at < courses.size() && courses.size() <= kMostPossible; ++at) {
+  for (size_t at = 0; at < branches.size() && branches.size() <= kMostPossible; ++at) {
     for (const ModeGuard& guard : in.guards) {
-      const Course course = courses[at];
-      if (in.modes[guard.mode] != course.now.mode || seen.IsFalse(guard)) continue;
-      Course next{{guard.after, {}}, nullptr, true};
+      const Branch branch = branches[at];
+      if (in.modes[guard.mode] != branch.now.mode || seen.IsFalse(guard)) continue;
+      Branch next{{guard.after, {}}, nullptr, true};
       if (guard.IsComparison() && IsFinite(seen.Slope(guard.first))) {
         const TermId term = guard.formula.terms[0];
         // Is the term positive, or at least not falling through zero, just after the mode was entered? If the
         // mode was entered in this step by another comparison, that is not known: then the event may follow
         // at once.
         const bool began_false =
-            !course.entered || (course.by != nullptr && (is_strict(guard) || is_strict(*course.by)) &&
-                                system_.AreOpposite(course.by->formula.terms[0], term));
+            !branch.entered || (branch.by != nullptr && (is_strict(guard) || is_strict(*branch.by)) &&
+                                system_.AreOpposite(branch.by->formula.terms[0], term));
         if (began_false) {
-          if (seen.Slope(guard.first).lo >= 0 || course.now.rising.contains(term)) continue;
+          if (seen.Slope(guard.first).lo >= 0 || branch.now.rising.contains(term)) continue;
           next.by = &guard;
         }
-        next.now.rising = course.now.rising;
+        next.now.rising = branch.now.rising;
         next.now.rising.erase(term);
         // It fell to zero. If it goes on falling, ever faster, its negation rises.
         if (began_false && seen.Acceleration(guard.first).hi < 0) {
@@ -87,13 +87,13 @@ std::optional<std::vector<Follower::Possible>> Follower::Reached(const ModeSyste
         }
       }
       const bool known = std::ranges::any_of(
-          courses, [&](const Course& c) { return c.entered && c.now == next.now && c.by == next.by; });
-      if (!known) courses.push_back(std::move(next));
+          branches, [&](const Branch& c) { return c.entered && c.now == next.now && c.by == next.by; });
+      if (!known) branches.push_back(std::move(next));
     }
   }
-  if (courses.size() > kMostPossible) return std::nullopt;
+  if (branches.size() > kMostPossible) return std::nullopt;
   std::vector<Possible> all;
-  for (Course& c : courses) {
+  for (Branch& c : branches) {
     if (std::ranges::find(all, c.now) == all.end()) all.push_back(std::move(c.now));
   }
   return all;

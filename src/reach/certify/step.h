@@ -1,8 +1,8 @@
 #pragma once
 
-#include "reach/certify/errors.h"
-#include "reach/certify/evaluate.h"
-#include "reach/certify/reach_set.h"
+#include "reach/certify/models/errors.h"
+#include "reach/certify/models/evaluate.h"
+#include "reach/certify/models/reach_set.h"
 
 namespace rondo::reach::certify {
 

@@ -4,7 +4,8 @@
 #include <set>
 
 #include "expr/substitute.h"
-#include "reach/system/bounds.h"
+#include "reach/problem/bounds.h"
+#include "verdict/truth.h"
 
 namespace rondo::reach::certify {
 
@@ -37,7 +38,7 @@ base::Result<std::unique_ptr<System>> System::Of(const Problem& problem) {
 }
 
 bool System::IsEmpty(const interval::Box& box) const {
-  return CheckBox(assumed_terms_, assumed_, box) == Truth::kFalse;
+  return CheckBox(assumed_terms_, assumed_, box) == verdict::Truth::kFalse;
 }
 
 bool System::IsSample(const Rational& instant) const {

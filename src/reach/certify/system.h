@@ -5,9 +5,9 @@
 #include <mutex>
 
 #include "reach/certify/step.h"
-#include "reach/system/formula.h"
-#include "reach/system/modes.h"
-#include "reach/system/problem.h"
+#include "reach/problem/formula.h"
+#include "reach/problem/modes.h"
+#include "reach/problem/problem.h"
 
 namespace rondo::reach::certify {
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "draw/svg.h"
-#include "reach/system/bounds.h"
+#include "reach/problem/bounds.h"
 
 namespace rondo::reach {
 
@@ -105,37 +105,37 @@ class Picture {
     std::mt19937_64 random(options_.seed);
     const size_t n = p_.states.size();
     for (size_t k = 0; k < options_.samples && !stop_.StopRequested(); ++k) {
-      Course course;
+      Execution execution;
       for (size_t i = 0; i < n; ++i) {
         const double u = static_cast<double>(random() >> 11) * 0x1p-53;
         const Interval side = p_.initial[i];
         const double share = k < options_.samples / 2 ? std::round(u) : u;
-        course.start.push_back(std::clamp(side.lo + share * (side.hi - side.lo), side.lo, side.hi));
+        execution.start.push_back(std::clamp(side.lo + share * (side.hi - side.lo), side.lo, side.hi));
       }
       for (size_t i = 0; i < p_.copy_of.size(); ++i) {
-        if (p_.copy_of[i]) course.start[i] = course.start[*p_.copy_of[i]];
+        if (p_.copy_of[i]) execution.start[i] = execution.start[*p_.copy_of[i]];
       }
       if (!p_.inputs.empty()) {
-        course.input_period = Horizon() / 16;
+        execution.input_period = Horizon() / 16;
         for (int slot = 0; slot < 16; ++slot) {
           std::vector<double> values;
           for (const Input& input : p_.inputs) {
             const double u = static_cast<double>(random() >> 11) * 0x1p-53;
             values.push_back(input.bounds.lo + u * (input.bounds.hi - input.bounds.lo));
           }
-          course.inputs.push_back(std::move(values));
+          execution.inputs.push_back(std::move(values));
         }
       }
-      if (trajectories.MissAssumed(course.start) > 1e-9) continue;
-      samples_.push_back(Along(trajectories, course, Horizon()));
+      if (trajectories.MissAssumed(execution.start) > 1e-9) continue;
+      samples_.push_back(Along(trajectories, execution, Horizon()));
     }
-    if (refuted_ != nullptr) broken_ = Along(trajectories, refuted_->course, refuted_->violation.time);
+    if (refuted_ != nullptr) broken_ = Along(trajectories, refuted_->execution, refuted_->violation.time);
   }
 
-  Trajectory Along(Trajectories& trajectories, const Course& course, double end) const {
+  Trajectory Along(Trajectories& trajectories, const Execution& execution, double end) const {
     Trajectory rows;
     trajectories.Run(
-        course, Horizon() / 400,
+        execution, Horizon() / 400,
         [&](double t, std::span<const double> x) {
           rows.push_back({t, {x.begin(), x.end()}});
           return t < end && !stop_.StopRequested();

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/result.h"
-#include "reach/system/formula.h"
-#include "reach/system/problem.h"
+#include "reach/problem/formula.h"
+#include "reach/problem/problem.h"
 
 namespace rondo::reach {
 

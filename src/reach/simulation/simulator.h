@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "reach/system/numeric.h"
+#include "reach/problem/numeric.h"
 
 namespace rondo::reach {
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "reach/validated/box_series.h"
+#include "reach/validated/series/box_series.h"
 
 namespace rondo::reach {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reach/validated/stage.h"
+#include "reach/validated/flow/stage.h"
 
 namespace rondo::reach {
 

@@ -3,8 +3,9 @@
 #include <cmath>
 
 #include "reach/validated/around.h"
-#include "reach/validated/bound.h"
 #include "reach/validated/runner.h"
+#include "reach/validated/series/bound.h"
+#include "verdict/truth.h"
 
 namespace rondo::reach {
 
@@ -49,7 +50,7 @@ Polynomial Divide(const Monomials& monomials, const Polynomial& a, const Polynom
 // of the condition, but for a residual. The flow of f' in the mode after, for the same time T for all of
 // them, lets them get over what the event has set off; then that of (W - q) f' leads all to the same instant,
 // W + T after the beginning. The true instant of the event differs from q(s) by at most the residual over the
-// least rate, and the true course from the enclosed one by at most that times |f - f'|.
+// least rate, and the true trajectory from the enclosed one by at most that times |f - f'|.
 class Runner::Crossing {
  public:
   Crossing(Runner& runner, State& state, const Stage& stage) : r_(runner), state_(state), before_(stage) {}
@@ -139,7 +140,7 @@ class Runner::Crossing {
     for (size_t probe = 0; probe < kMostProbes && flow.time() < until; ++probe) {
       if (r_.stop_.StopRequested() || !flow.Step(until)) return false;
       for (const Guard& g : before_.guards) {
-        if (r_.During(g, flow) == Truth::kFalse) continue;
+        if (r_.During(g, flow) == verdict::Truth::kFalse) continue;
         if (guard_ == nullptr) {
           const auto term = g.formula.Deciding(RangesIn(g, flow));
           if (!term) return false;
@@ -167,7 +168,7 @@ class Runner::Crossing {
   Next Move(const Stage& stage, FlowSet from, double duration, bool keep, FlowSet& to) {
     FlowOptions options = r_.flow_;
     options.first_step = 1e-3 * duration;
-    // That the factor differs between courses widens the linear part, however short the steps are.
+    // That the factor differs between trajectories widens the linear part, however short the steps are.
     options.linear_tolerance = HUGE_VAL;
     Flow flow(stage.dynamics, r_.monomials_, options, duration);
     flow.Start(std::move(from), 0);
@@ -177,13 +178,13 @@ class Runner::Crossing {
     }
     while (flow.time() < duration) {
       if (r_.stop_.StopRequested()) {
-        r_.Fail(begin_, "stopped");
+        r_.Stopped(begin_);
         return Next::kFailed;
       }
       if (!flow.Step(duration) || r_.TooWide(flow, 0.1)) return Next::kNo;
       if (!keep) continue;
       for (const Guard& g : stage.guards) {
-        if (r_.During(g, flow) == Truth::kFalse) continue;
+        if (r_.During(g, flow) == verdict::Truth::kFalse) continue;
         if (guard_ == nullptr && Returns(g) && flow.stepper().ObservedRate(g.first).lo > 0) continue;
         const bool expected = guard_ != nullptr && g.event == guard_->event;
         if (!expected || !g.formula.ComesDownTo(term_, RangesIn(g, flow))) return Next::kNo;
@@ -309,7 +310,7 @@ class Runner::Crossing {
     Map observe(before_.observed, n, before_.dynamics.inputs, r_.monomials_);
     if (!observe.Apply(there)) return Next::kNo;
     const double late = Above(Magnitude(observe.Range(Output())) / Below(least_rate_));
-    // A box that no course leaves within twice that time, whatever mode it is in.
+    // A box that no trajectory leaves within twice that time, whatever mode it is in.
     interval::Box box(n), rates(n), jumps(n);
     for (size_t i = 0; i < n; ++i) {
       const double error = there.Error(i);
@@ -362,7 +363,7 @@ class Runner::Crossing {
       const auto range = [&](size_t atom) { return observe.Range(g.first + atom); };
       const bool expected = is_before && g.event == guard_->event;
       if (!is_before && Returns(g)) continue;
-      if (expected ? !g.formula.ComesDownTo(term_, range) : g.formula.Check(range) != Truth::kFalse)
+      if (expected ? !g.formula.ComesDownTo(term_, range) : g.formula.Check(range) != verdict::Truth::kFalse)
         return Next::kNo;
     }
     for (const StageQuery& q : stage.queries) {
@@ -374,11 +375,11 @@ class Runner::Crossing {
     if (!r_.claims_) return Next::kChanged;
     for (const StageClaim& claim : stage.claims) {
       if (claim.instant || claim.from >= end_ || claim.to <= begin_) continue;
-      const Truth holds = claim.formula.Check([&](size_t atom) {
+      const verdict::Truth holds = claim.formula.Check([&](size_t atom) {
         const Interval range = observe.Range(claim.first + atom);
         return claim.implied[atom] ? AtMostZero(range) : range;
       });
-      if (holds == Truth::kTrue) continue;
+      if (holds == verdict::Truth::kTrue) continue;
       r_.NotEstablished(end_, claim.claim);
       return Next::kFailed;
     }

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 
-#include "reach/system/bounds.h"
+#include "reach/problem/bounds.h"
 #include "reach/validated/runner.h"
+#include "verdict/truth.h"
 
 namespace rondo::reach {
 
@@ -18,19 +19,19 @@ bool Strictly(const Guard& guard, const Map& observe) {
   return guard.formula.Check([&](size_t atom) {
     const Interval range = observe.Range(guard.first + atom);
     return range.hi == 0 ? Interval{range.lo, 0x1p-1000} : range;
-  }) == Truth::kTrue;
+  }) == verdict::Truth::kTrue;
 }
 
 }  // namespace
 
-Truth Runner::During(const Guard& guard, Flow& flow) const {
+verdict::Truth Runner::During(const Guard& guard, Flow& flow) const {
   Stepper& stepper = flow.stepper();
   const auto check = [&](bool tight) {
     return guard.formula.Check(
         [&](size_t atom) { return stepper.Observed(guard.first + atom, 0, stepper.h(), tight); });
   };
-  const Truth truth = check(false);
-  return truth == Truth::kOpen ? check(true) : truth;
+  const verdict::Truth truth = check(false);
+  return truth == verdict::Truth::kOpen ? check(true) : truth;
 }
 
 // Is it certain that no event happens during this step? What is not known any more is forgotten.
@@ -47,8 +48,8 @@ bool Runner::Quiet(Flow& flow, const Stage& stage, State& state) const {
                          stepper.ObservedSecond(guard.first).lo > 0;
       if (known) rising.insert(guard.formula.terms[0]);
       const auto on_box = [&](size_t atom) { return values[stage.observed.outputs[guard.first + atom]]; };
-      if (known || guard.formula.Check(on_box) == Truth::kFalse) continue;
-      if (During(guard, flow) != Truth::kFalse) return false;
+      if (known || guard.formula.Check(on_box) == verdict::Truth::kFalse) continue;
+      if (During(guard, flow) != verdict::Truth::kFalse) return false;
     }
     p.rising = std::move(rising);
   }
@@ -67,8 +68,9 @@ bool Runner::Happened(State& state, const Stage& stage, Map& observe) {
     bool stays = true;
     for (const Guard& guard : stage.guards) {
       if (stage.modes[guard.mode] != p.mode) continue;
-      const Truth truth = guard.formula.Check([&](size_t atom) { return observe.Range(guard.first + atom); });
-      if (truth != Truth::kFalse) add({guard.after, {}});
+      const verdict::Truth truth =
+          guard.formula.Check([&](size_t atom) { return observe.Range(guard.first + atom); });
+      if (truth != verdict::Truth::kFalse) add({guard.after, {}});
       stays = stays && !Strictly(guard, observe);
     }
     if (stays) add(p);
@@ -103,7 +105,7 @@ bool Runner::Successors(const Stage& stage, Flow& flow, std::vector<Possible>& a
     for (const Guard& guard : stage.guards) {
       const Entry entry = open[at];
       if (stage.modes[guard.mode] != entry.possible.mode) continue;
-      if (During(guard, flow) == Truth::kFalse) continue;
+      if (During(guard, flow) == verdict::Truth::kFalse) continue;
       Possible next{guard.after, {}};
       std::optional<TermId> by;
       bool by_strict = false;

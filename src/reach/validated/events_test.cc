@@ -313,17 +313,17 @@ TEST_F(Events, RandomSwitchedSystems) {
     ASSERT_TRUE(found.ok());
     Trajectories run = std::move(found).value();
     for (int k = 0; k < 40; ++k) {
-      Course course;
+      Execution execution;
       for (size_t i = 0; i < p.states.size(); ++i) {
         const Interval side = p.initial[i];
         const double u = k < 4 ? ((k >> i) & 1) : static_cast<double>(random() >> 11) * 0x1p-53;
-        course.start.push_back(std::min(side.hi, side.lo + u * (side.hi - side.lo)));
+        execution.start.push_back(std::min(side.hi, side.lo + u * (side.hi - side.lo)));
       }
-      run.Run(course, 0.02, [&](double t, std::span<const double> x) {
+      run.Run(execution, 0.02, [&](double t, std::span<const double> x) {
         bool inside = false;
         for (const Leaf& leaf : proved->leaves) {
           bool own = true;
-          for (size_t i = 0; i < x.size(); ++i) own = own && leaf.initial[i].Contains(course.start[i]);
+          for (size_t i = 0; i < x.size(); ++i) own = own && leaf.initial[i].Contains(execution.start[i]);
           for (const TubeSegment& s : leaf.tube) {
             if (!own || t < s.from - 1e-9 || t > s.to + 1e-9) continue;
             bool in = true;

@@ -54,6 +54,11 @@ std::vector<Part> Halves(const Problem& problem, const Part& part, size_t side) 
 
 }  // namespace
 
+verdict::Verdict VerdictOf(const Outcome& outcome) {
+  if (std::holds_alternative<Proved>(outcome)) return verdict::Verdict::kProved;
+  return std::holds_alternative<Refuted>(outcome) ? verdict::Verdict::kRefuted : verdict::Verdict::kUnknown;
+}
+
 base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& options,
                              const base::StopToken& stop) {
   auto made = Stages::Of(problem);
@@ -78,7 +83,7 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
     std::vector<Attempt> attempts(open.size());
     base::ParallelFor(open.size(), options.jobs, [&](size_t i) {
       if (stop.StopRequested()) {
-        attempts[i].reason = "stopped";
+        attempts[i].shortfall = verdict::Shortfall::kInterrupted;
         return;
       }
       attempts[i] = Runner(stages, options, flow, open[i].box, problem.initial, stop).Run();
@@ -98,8 +103,9 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
         continue;
       }
       reason = a.time > 0 ? fmt::format("{}, at {:.4g} s", a.reason, a.time) : a.reason;
-      if (a.reason == "stopped")
-        return Outcome{Undecided{"stopped", search.closest(), std::move(proved.leaves)}};
+      if (a.shortfall == verdict::Shortfall::kInterrupted) {
+        return Outcome{Undecided{"stopped", a.shortfall, search.closest(), std::move(proved.leaves)}};
+      }
       if (!a.worst.empty()) {
         if (auto refuted = search.Try(a.worst)) return Outcome{std::move(*refuted)};
       }
@@ -111,12 +117,12 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
       const double middle = side.Middle();
       if (side.IsPoint() || middle <= side.lo || middle >= side.hi ||
           side.Width() < 1e-4 * problem.initial[a.split].Width())
-        return Outcome{Undecided{reason, search.closest(), std::move(proved.leaves)}};
+        return Outcome{Undecided{reason, a.shortfall, search.closest(), std::move(proved.leaves)}};
       for (Part& half : Halves(problem, open[i], a.split)) next.push_back(std::move(half));
     }
     if (done + next.size() > options.most_leaves)
-      return Outcome{Undecided{reason + ", with the most parts that are allowed", search.closest(),
-                               std::move(proved.leaves)}};
+      return Outcome{Undecided{reason + ", with the most parts that are allowed", verdict::Shortfall::kMethod,
+                               search.closest(), std::move(proved.leaves)}};
     open = std::move(next);
     // The whole deserves care; of parts, many cheap ones are better.
     flow.most_monomials = std::min<size_t>(flow.most_monomials, 260);

@@ -6,8 +6,9 @@
 #include <variant>
 
 #include "base/stop.h"
-#include "reach/system/numeric.h"
-#include "reach/validated/flow.h"
+#include "reach/problem/numeric.h"
+#include "reach/validated/flow/flow.h"
+#include "verdict/verdict.h"
 
 namespace rondo::reach {
 
@@ -56,22 +57,26 @@ struct Proved {
   size_t steps = 0;
 };
 
-/// A course on which a claim fails; enclosed rigorously at that time if `certain`.
+/// A trajectory on which a claim fails; enclosed rigorously at that time if `certain`.
 struct Refuted {
-  Course course;
+  Execution execution;
   Violation violation;
   bool certain = false;
 };
 
 /// Neither.
 struct Undecided {
-  std::string reason;
+  std::string reason;  ///< for people
+  verdict::Shortfall shortfall = verdict::Shortfall::kMethod;
   /// How near the claims came to failing, by samples: negative is inside.
   std::optional<Violation> closest;
   std::vector<Leaf> leaves;
 };
 
 using Outcome = std::variant<Proved, Refuted, Undecided>;
+
+/// Returns the word for it: proved, refuted or unknown.
+verdict::Verdict VerdictOf(const Outcome& outcome);
 
 struct ProverOptions {
   FlowOptions flow;
@@ -90,17 +95,17 @@ struct Query {
   double from = 0, to = 0;
 };
 
-/// Encloses the values of terms over the states and inputs on every course that a proof is about, each during
-/// its interval: by polynomials, as sharply as claims are decided. The tube is followed again, from the parts
-/// that it has.
+/// Encloses the values of terms over the states and inputs on every trajectory that a proof is about, each
+/// during its interval: by polynomials, as sharply as claims are decided. The tube is followed again, from
+/// the parts that it has.
 ///
 /// @error if a term has no meaning, or no value somewhere.
 base::Result<std::vector<Interval>> RangesOn(const Problem& problem, const Proved& proved,
                                              const std::vector<Query>& queries, const ProverOptions& options,
                                              const base::StopToken& stop);
 
-/// Decides whether every claim of the problem holds on every course. Proofs are rigorous; a refutation is a
-/// trajectory.
+/// Decides whether every claim of the problem holds on every trajectory. Proofs are rigorous; a refutation is
+/// a trajectory.
 ///
 /// @error if the problem uses what has no derivative (integers, uninterpreted functions).
 base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& options,

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reach/system/bounds.h"
-#include "reach/validated/bound.h"
+#include "reach/problem/bounds.h"
+#include "reach/validated/series/bound.h"
+#include "verdict/truth.h"
 
 namespace rondo::reach {
 
@@ -58,7 +59,7 @@ Runner::State Runner::Begin() const {
 }
 
 Attempt Runner::Run() {
-  if (CheckBox(stages_.assumed_terms(), stages_.assumed(), box_) == Truth::kFalse) {
+  if (CheckBox(stages_.assumed_terms(), stages_.assumed(), box_) == verdict::Truth::kFalse) {
     attempt_.proved = attempt_.vacuous = true;
     return std::move(attempt_);
   }
@@ -102,11 +103,14 @@ void Runner::Answer(Flow& flow, const Stage& stage, double from, double to) {
   }
 }
 
-bool Runner::Fail(double time, std::string reason) {
+bool Runner::Fail(double time, std::string reason, verdict::Shortfall shortfall) {
+  attempt_.shortfall = shortfall;
   attempt_.reason = std::move(reason);
   attempt_.time = time;
   return false;
 }
+
+bool Runner::Stopped(double time) { return Fail(time, "stopped", verdict::Shortfall::kInterrupted); }
 
 bool Runner::NotEstablished(double time, size_t claim) {
   attempt_.claim = claim;
@@ -188,7 +192,8 @@ Runner::Next Runner::Along(State& state, const Stage& stage) {
   };
   if (state.possible.size() > 1 && stage.ambiguous && observe.Apply(flow.set())) {
     const bool calm = std::ranges::all_of(stage.guards, [&](const Guard& g) {
-      return g.formula.Check([&](size_t atom) { return observe.Range(g.first + atom); }) == Truth::kFalse;
+      return g.formula.Check([&](size_t atom) { return observe.Range(g.first + atom); }) ==
+             verdict::Truth::kFalse;
     });
     if (calm) return Next::kFork;
   }
@@ -238,7 +243,7 @@ Runner::Next Runner::Along(State& state, const Stage& stage) {
     for (const StageClaim& claim : stage.claims) {
       if (claim.claim == *broken_ && claim.formula.Check([&](size_t atom) {
             return observe.Range(claim.first + atom);
-          }) != Truth::kFalse)
+          }) != verdict::Truth::kFalse)
         return failed("it may hold");
     }
   }
@@ -251,7 +256,10 @@ Runner::Next Runner::StepOn(Flow& flow, State& state, const Stage& stage, double
     Fail(flow.time(), std::move(reason));
     return Next::kFailed;
   };
-  if (stop_.StopRequested()) return failed("stopped");
+  if (stop_.StopRequested()) {
+    Stopped(flow.time());
+    return Next::kFailed;
+  }
   const bool events = !stage.guards.empty();
   if (events) {
     if (state.time < flow.time()) earlier_ = state;
@@ -351,11 +359,11 @@ bool Runner::Instants(const Stage& stage, const FlowSet& set, Map& observe, doub
     if (!applied && !observe.Apply(set))
       return Fail(time, "a claim, or the condition of an event, is not defined on the whole set");
     applied = true;
-    const Truth truth = claim.formula.Check([&](size_t atom) {
+    const verdict::Truth truth = claim.formula.Check([&](size_t atom) {
       const Interval range = observe.Range(claim.first + atom);
       return (start && claim.starts_below[atom]) || claim.implied[atom] ? AtMostZero(range) : range;
     });
-    if (truth != Truth::kTrue) return NotEstablished(time, claim.claim);
+    if (truth != verdict::Truth::kTrue) return NotEstablished(time, claim.claim);
   }
   return true;
 }
@@ -388,11 +396,11 @@ bool Runner::During(Flow& flow, const Stage& stage, double from, double to) {
     const auto on_box = [&](size_t atom) {
       return below(i, atom, values[stage.observed.outputs[claim.first + atom]]);
     };
-    if (claim.formula.Check(on_box) == Truth::kTrue) continue;
-    if (check(0, h, false) == Truth::kTrue) continue;
+    if (claim.formula.Check(on_box) == verdict::Truth::kTrue) continue;
+    if (check(0, h, false) == verdict::Truth::kTrue) continue;
     // By polynomials, over shorter times where it is close.
     const std::function<bool(double, double, int)> established = [&](double begin, double end, int halvings) {
-      if (check(begin, end, true) == Truth::kTrue) return true;
+      if (check(begin, end, true) == verdict::Truth::kTrue) return true;
       const double middle = begin + (end - begin) / 2;
       return halvings > 0 && established(begin, middle, halvings - 1) &&
              established(middle, end, halvings - 1);

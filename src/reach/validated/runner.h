@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <set>
 
-#include "reach/validated/map.h"
+#include "reach/validated/flow/map.h"
+#include "reach/validated/flow/stage.h"
 #include "reach/validated/prover.h"
-#include "reach/validated/stage.h"
+#include "verdict/truth.h"
+#include "verdict/verdict.h"
 
 namespace rondo::reach {
 
@@ -14,7 +16,8 @@ struct Attempt {
   bool proved = false;
   bool vacuous = false;  ///< nothing in it satisfies what is assumed
   Leaf leaf;
-  std::string reason;
+  std::string reason;  ///< why not, if it is not proved
+  verdict::Shortfall shortfall = verdict::Shortfall::kMethod;
   double time = 0;
   size_t claim = 0;
   size_t split = 0;           ///< the state whose side should be halved
@@ -61,7 +64,8 @@ class Runner {
   bool IsCopy(size_t i) const;
   void MakeSymbols();
   State Begin() const;
-  bool Fail(double time, std::string reason);
+  bool Fail(double time, std::string reason, verdict::Shortfall shortfall = verdict::Shortfall::kMethod);
+  bool Stopped(double time);
   bool NotEstablished(double time, size_t claim);
 
   bool Follow(State state);
@@ -83,7 +87,7 @@ class Runner {
 
   // Events.
   bool Quiet(Flow& flow, const Stage& stage, State& state) const;
-  Truth During(const Guard& guard, Flow& flow) const;
+  verdict::Truth During(const Guard& guard, Flow& flow) const;
   bool Happened(State& state, const Stage& stage, Map& observe);
   Next Window(const Flow& before, State& state, double until);
   bool Successors(const Stage& stage, Flow& flow, std::vector<Possible>& all) const;

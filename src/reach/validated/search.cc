@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "expr/substitute.h"
-#include "reach/system/bounds.h"
+#include "reach/problem/bounds.h"
 #include "reach/validated/runner.h"
+#include "verdict/truth.h"
 
 namespace rondo::reach {
 
@@ -59,10 +60,10 @@ std::optional<Refuted> Search::Try(std::vector<double> start) {
     if (problem_.copy_of[i]) start[i] = start[*problem_.copy_of[i]];
   }
   if (!MayStart(start)) return std::nullopt;
-  Course course;
-  course.start = std::move(start);
+  Execution execution;
+  execution.start = std::move(start);
   const double horizon = stages_.horizon();
-  course.input_period = horizon / 16;
+  execution.input_period = horizon / 16;
   if (!problem_.inputs.empty()) {
     const auto mode = random_() % 3;
     for (int slot = 0; slot < 16; ++slot) {
@@ -70,17 +71,17 @@ std::optional<Refuted> Search::Try(std::vector<double> start) {
       for (size_t i = 0; i < problem_.inputs.size(); ++i) {
         const Interval b = problem_.inputs[i].bounds;
         const bool up =
-            mode == 0 && !course.inputs.empty() ? course.inputs.back()[i] == b.hi : random_() % 2 == 0;
+            mode == 0 && !execution.inputs.empty() ? execution.inputs.back()[i] == b.hi : random_() % 2 == 0;
         values.push_back(up ? b.hi : b.lo);
       }
-      course.inputs.push_back(std::move(values));
+      execution.inputs.push_back(std::move(values));
     }
   }
   // The first miss may be so small that nothing can be made of it: another may follow, of this claim or of
   // another.
   double margin = 0;
   for (const double next : {1e-6, 1e-3, 0.0}) {
-    Violation worst = trajectories_.Worst(course, horizon / 400, margin, 1e-10, stop_);
+    Violation worst = trajectories_.Worst(execution, horizon / 400, margin, 1e-10, stop_);
     if (stop_.StopRequested()) return std::nullopt;
     if (worst.miss <= 0) {
       if (worst.miss > -1e299 && (!closest_ || worst.miss > closest_->miss)) closest_ = worst;
@@ -91,7 +92,7 @@ std::optional<Refuted> Search::Try(std::vector<double> start) {
     // Events shift instants: so small a miss is the integrator's.
     const bool clear = problem_.events.empty() || worst.miss > 1e-9 * size;
     if (clear) {
-      Refuted refuted{course, std::move(worst), false};
+      Refuted refuted{execution, std::move(worst), false};
       refuted.certain = Confirm(refuted);
       if (refuted.certain || Repeats(refuted, margin)) return refuted;
     }
@@ -112,7 +113,7 @@ bool Search::MayStart(const std::vector<double>& start) {
   const TermId exact = expr::Substitute(arena, problem_.assume, values);
   if (exact == arena.True()) return true;
   if (exact == arena.False()) return false;
-  return CheckBox(stages_.assumed_terms(), stages_.assumed(), StartBox(start)) == Truth::kTrue;
+  return CheckBox(stages_.assumed_terms(), stages_.assumed(), StartBox(start)) == verdict::Truth::kTrue;
 }
 
 interval::Box Search::StartBox(const std::vector<double>& start) const {
@@ -127,7 +128,7 @@ interval::Box Search::StartBox(const std::vector<double>& start) const {
 // A violation that could not be enclosed counts if it does not depend on how finely it was computed.
 bool Search::Repeats(const Refuted& refuted, double margin) {
   const double horizon = stages_.horizon();
-  const Violation fine = trajectories_.Worst(refuted.course, horizon / 20000, margin, 1e-13, stop_);
+  const Violation fine = trajectories_.Worst(refuted.execution, horizon / 20000, margin, 1e-13, stop_);
   if (stop_.StopRequested() || fine.miss <= 0) return false;
   if (!problem_.events.empty()) {
     // Events shift instants: both runs have to break the claim clearly, and nearly at the same time.
@@ -140,7 +141,7 @@ bool Search::Repeats(const Refuted& refuted, double margin) {
   double apart = 0;
   std::vector<double> there;
   trajectories_.Run(
-      refuted.course, horizon / 400,
+      refuted.execution, horizon / 400,
       [&](double t, std::span<const double> x) {
         if (t < refuted.violation.time - 1e-12) return true;
         there.assign(x.begin(), x.end());
@@ -195,21 +196,21 @@ bool Search::Confirm(const Refuted& refuted) {
   if (!problem_.events.empty()) return ConfirmWithEvents(refuted);
   const auto made = stages_.For({stages_.modes().start()});
   const Stage& stage = *made.value();
-  const interval::Box point = StartBox(refuted.course.start);
+  const interval::Box point = StartBox(refuted.execution.start);
   Dynamics dynamics = stage.dynamics;
   auto monomials = std::make_shared<Monomials>(0);
   FlowOptions options = options_.flow;
   Flow flow(dynamics, monomials, options, stages_.horizon());
   flow.Start(FromBox(point, *monomials, std::vector<int>(point.size(), -1)), 0);
   const auto hold = [&](double t) {
-    if (refuted.course.inputs.empty()) {
+    if (refuted.execution.inputs.empty()) {
       for (Interval& i : dynamics.inputs) i = Interval::Point(i.Middle());
       return;
     }
-    const auto slot = std::min(refuted.course.inputs.size() - 1,
-                               static_cast<size_t>(std::floor(t / refuted.course.input_period + 1e-9)));
+    const auto slot = std::min(refuted.execution.inputs.size() - 1,
+                               static_cast<size_t>(std::floor(t / refuted.execution.input_period + 1e-9)));
     for (size_t i = 0; i < dynamics.inputs.size(); ++i)
-      dynamics.inputs[i] = Interval::Point(refuted.course.inputs[slot][i]);
+      dynamics.inputs[i] = Interval::Point(refuted.execution.inputs[slot][i]);
   };
   const double end = refuted.violation.time;
   size_t sample = 0;
@@ -228,8 +229,8 @@ bool Search::Confirm(const Refuted& refuted) {
     double until = end;
     if (sample < stages_.samples()) until = std::min(until, stages_.period() * static_cast<double>(sample));
     if (!dynamics.inputs.empty()) {
-      const double slot = std::floor(flow.time() / refuted.course.input_period + 1e-9) + 1;
-      until = std::min(until, slot * refuted.course.input_period);
+      const double slot = std::floor(flow.time() / refuted.execution.input_period + 1e-9) + 1;
+      until = std::min(until, slot * refuted.execution.input_period);
     }
     while (flow.time() < until) {
       if (stop_.StopRequested() || !flow.Step(until)) return false;
@@ -238,13 +239,14 @@ bool Search::Confirm(const Refuted& refuted) {
   Map observe(stage.observed, dynamics.states, dynamics.inputs, monomials);
   if (!observe.Apply(flow.set())) return false;
   const StageClaim& claim = stage.claims[refuted.violation.claim];
-  return claim.formula.Check([&](size_t atom) { return observe.Range(claim.first + atom); }) == Truth::kFalse;
+  return claim.formula.Check([&](size_t atom) { return observe.Range(claim.first + atom); }) ==
+         verdict::Truth::kFalse;
 }
 
 // The same where events happen, for what no input drives.
 bool Search::ConfirmWithEvents(const Refuted& refuted) {
   if (!problem_.inputs.empty() || refuted.violation.time <= 0) return false;
-  const interval::Box point = StartBox(refuted.course.start);
+  const interval::Box point = StartBox(refuted.execution.start);
   Runner runner(stages_, options_, options_.flow, point, problem_.initial, stop_);
   return runner.Breaks(refuted.violation.claim, refuted.violation.time);
 }

@@ -4,9 +4,9 @@
 #include <random>
 #include <vector>
 
-#include "reach/system/numeric.h"
+#include "reach/problem/numeric.h"
+#include "reach/validated/flow/stage.h"
 #include "reach/validated/prover.h"
-#include "reach/validated/stage.h"
 
 namespace rondo::reach {
 

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <random>
 
-#include "reach/validated/jet.h"
-#include "reach/validated/map.h"
+#include "reach/validated/flow/map.h"
 #include "reach/validated/prover.h"
-#include "reach/validated/transition.h"
+#include "reach/validated/series/jet.h"
+#include "reach/validated/series/transition.h"
 
 namespace rondo::reach {
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "expr/numeric.h"
-#include "robot/model/shape.h"
+#include "robot/values/shape.h"
 
 /// Shapes in contact, by numbers: FCL's word against ours.
 namespace rondo::robot {

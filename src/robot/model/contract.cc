@@ -169,8 +169,7 @@ void CheckRobot(const RobotDef& type, Evaluator& e) {
             .Report(Kind::kChoreoUndeclared, p.dimension.span,
                     fmt::format("there is no dimension `{}`", p.dimension.text))
             .Help(
-                "one of `length`, `angle`, `time`, `speed`, `acceleration`, `angular_speed`, `number`, "
-                "`point`");
+                "one of `length`, `angle`, `time`, `speed`, `acceleration`, `angular_speed`, `number`, `point`");
       }
     }
     const Scope scope = MotionScope(body, *motion, args, spans, e);

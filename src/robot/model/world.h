@@ -5,8 +5,8 @@
 #include <set>
 #include <vector>
 
-#include "robot/model/evaluate.h"
 #include "robot/syntax/ast.h"
+#include "robot/values/evaluate.h"
 
 namespace rondo::robot {
 

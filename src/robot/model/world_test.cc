@@ -10,8 +10,8 @@
 #include <random>
 
 #include "lang/lexer.h"
-#include "robot/model/shape.h"
 #include "robot/syntax/parser.h"
+#include "robot/values/shape.h"
 
 namespace rondo::robot {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "robot/model/shape.h"
+#include "robot/values/shape.h"
 
 namespace rondo::robot {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "expr/defined.h"
-#include "robot/model/value.h"
+#include "robot/values/value.h"
 
 namespace rondo::robot {
 namespace {

@@ -91,9 +91,7 @@ void Parser::ParseRobotItem(RobotDef& robot) {
     ParseMotion(robot, keyword.span);
   } else {
     Unexpected(
-        "`param`, `state`, `input`, `memory`, `frame`, `mount`, `body`, `hull`, `port`, `dynamics`, "
-        "`control` or "
-        "`motion`");
+        "`param`, `state`, `input`, `memory`, `frame`, `mount`, `body`, `hull`, `port`, `dynamics`, `control` or `motion`");
   }
 }
 

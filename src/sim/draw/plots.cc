@@ -34,10 +34,9 @@ class Canvas {
   Canvas(double x0, double y0, double x1, double y1, double width, double height)
       : x0_(x0), y1_(y1), sx_((width - 2 * kMargin) / (x1 - x0)), sy_((height - 2 * kMargin) / (y1 - y0)) {
     out_ = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" height=\"{:.0f}\" viewBox=\"0 0 {:.0f} "
-        "{:.0f}\" "
-        "font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" "
-        "fill=\"white\"/>\n",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" height=\"{:.0f}\" viewBox=\"0 0 {:.0f} {:.0f}\" "
+        "font-family=\"sans-serif\" font-size=\"11\">\n"
+        "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
         width, height, width, height);
   }
   double X(double x) const { return kMargin + (x - x0_) * sx_; }

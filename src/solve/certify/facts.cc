@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solve/certify/periodic.h"
+#include "solve/certify/arithmetic/periodic.h"
 
 namespace rondo::solve::certify {
 

@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-#include "solve/certify/normal.h"
+#include "solve/certify/arithmetic/normal.h"
 
 namespace rondo::solve::certify {
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "solve/certify/normal.h"
+#include "solve/certify/arithmetic/normal.h"
 #include "solve/certify/propagator.h"
 
 namespace rondo::solve::certify {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "solve/certify/normal.h"
+#include "solve/certify/arithmetic/normal.h"
 
 namespace rondo::solve::certify {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "expr/arena.h"
-#include "solve/certify/enclosure.h"
+#include "solve/certify/arithmetic/enclosure.h"
 
 namespace rondo::solve::certify {
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "solve/icp/contractor.h"
+#include "solve/icp/tape/contractor.h"
 
 namespace rondo::solve::icp {
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "solve/icp/periods.h"
-#include "solve/icp/proof.h"
+#include "solve/icp/prepare/periods.h"
+#include "solve/icp/prepare/proof.h"
 #include "solve/icp/search.h"
 #include "solve/icp/verify.h"
 

@@ -5,7 +5,8 @@
 
 #include "expr/elementary.h"
 #include "expr/substitute.h"
-#include "solve/icp/tape.h"
+#include "solve/icp/tape/tape.h"
+#include "verdict/truth.h"
 
 namespace rondo::solve::icp {
 
@@ -17,8 +18,10 @@ using interval::Interval;
 
 namespace {
 
-Truth Not(Truth t) {
-  return t == Truth::kTrue ? Truth::kFalse : t == Truth::kFalse ? Truth::kTrue : Truth::kUndecided;
+verdict::Truth Not(verdict::Truth t) {
+  return t == verdict::Truth::kTrue    ? verdict::Truth::kFalse
+         : t == verdict::Truth::kFalse ? verdict::Truth::kTrue
+                                       : verdict::Truth::kOpen;
 }
 
 // Angles beyond what interval arithmetic tells apart are brought near zero exactly: by whole turns, pi
@@ -163,9 +166,9 @@ PointChecker::Value PointChecker::NewNumber(TermId t) {
       if (result.defined) result.range = value(0).range / value(1).range;
       return result;
     case Op::kIte: {
-      const Truth condition = Check(args[0]);
-      if (condition == Truth::kUndecided) return {std::nullopt, {}, false};
-      return values_.at(args[condition == Truth::kTrue ? 1 : 2]);
+      const verdict::Truth condition = Check(args[0]);
+      if (condition == verdict::Truth::kOpen) return {std::nullopt, {}, false};
+      return values_.at(args[condition == verdict::Truth::kTrue ? 1 : 2]);
     }
     case Op::kElementary: {
       const Elementary f = arena_.elementary_of(t);
@@ -185,39 +188,40 @@ PointChecker::Value PointChecker::NewNumber(TermId t) {
   }
 }
 
-Truth PointChecker::Compare(TermId atom, bool positive) {
+verdict::Truth PointChecker::Compare(TermId atom, bool positive) {
   const Value a = Number(arena_.arg(atom, 0));
   const Value b = Number(arena_.arg(atom, 1));
-  if (!a.defined || !b.defined) return Truth::kUndecided;
-  Truth truth = Truth::kUndecided;
+  if (!a.defined || !b.defined) return verdict::Truth::kOpen;
+  verdict::Truth truth = verdict::Truth::kOpen;
   const Op op = arena_.op(atom);
   if (a.exact && b.exact) {
     const bool holds = op == Op::kEq   ? *a.exact == *b.exact
                        : op == Op::kLe ? *a.exact <= *b.exact
                                        : *a.exact < *b.exact;
-    truth = holds ? Truth::kTrue : Truth::kFalse;
+    truth = holds ? verdict::Truth::kTrue : verdict::Truth::kFalse;
   } else if (op == Op::kEq) {
-    if (Meet(a.range, b.range).IsEmpty()) truth = Truth::kFalse;
+    if (Meet(a.range, b.range).IsEmpty()) truth = verdict::Truth::kFalse;
   } else if (a.range.hi < b.range.lo || (op == Op::kLe && a.range.hi == b.range.lo)) {
-    truth = Truth::kTrue;
+    truth = verdict::Truth::kTrue;
   } else if (a.range.lo > b.range.hi || (op == Op::kLt && a.range.lo == b.range.hi)) {
-    truth = Truth::kFalse;
+    truth = verdict::Truth::kFalse;
   }
   return positive ? truth : Not(truth);
 }
 
-Truth PointChecker::Check(TermId formula) {
+verdict::Truth PointChecker::Check(TermId formula) {
   switch (arena_.op(formula)) {
     case Op::kBool:
-      return formula == arena_.True() ? Truth::kTrue : Truth::kFalse;
+      return formula == arena_.True() ? verdict::Truth::kTrue : verdict::Truth::kFalse;
     case Op::kAnd:
     case Op::kOr: {
-      const Truth decides = arena_.op(formula) == Op::kAnd ? Truth::kFalse : Truth::kTrue;
-      Truth result = Not(decides);
+      const verdict::Truth decides =
+          arena_.op(formula) == Op::kAnd ? verdict::Truth::kFalse : verdict::Truth::kTrue;
+      verdict::Truth result = Not(decides);
       for (const TermId part : arena_.args(formula)) {
-        const Truth t = Check(part);
+        const verdict::Truth t = Check(part);
         if (t == decides) return t;
-        if (t == Truth::kUndecided) result = t;
+        if (t == verdict::Truth::kOpen) result = t;
       }
       return result;
     }

@@ -5,12 +5,11 @@
 
 #include "expr/arena.h"
 #include "interval/interval.h"
+#include "verdict/truth.h"
 
 namespace rondo::solve::icp {
 
 using Assignment = std::unordered_map<expr::TermId, expr::Rational>;
-
-enum class Truth : uint8_t { kFalse, kTrue, kUndecided };
 
 /// Evaluates formulas at one point, rationally where that is possible and with intervals otherwise. Written
 /// for certainty, not for speed, and apart from the tape: what it calls true is true, everything in it being
@@ -20,7 +19,7 @@ class PointChecker {
   PointChecker(const expr::Arena& arena, const Assignment& point) : arena_(arena), point_(point) {}
   /// The variable may have any value in `range`: what is called true is true for all of them.
   void Widen(expr::TermId variable, interval::Interval range) { widened_[variable] = range; }
-  Truth Check(expr::TermId formula);
+  verdict::Truth Check(expr::TermId formula);
   /// The value of a term, if it is known exactly.
   std::optional<expr::Rational> Exact(expr::TermId term);
   /// An enclosure of the value of a term; empty where it may have none.
@@ -34,7 +33,7 @@ class PointChecker {
   };
   const Value& Number(expr::TermId t);
   Value NewNumber(expr::TermId t);
-  Truth Compare(expr::TermId atom, bool positive);
+  verdict::Truth Compare(expr::TermId atom, bool positive);
 
   const expr::Arena& arena_;
   const Assignment& point_;

@@ -7,8 +7,8 @@
 #include <mutex>
 #include <thread>
 
-#include "solve/icp/contractor.h"
-#include "solve/icp/descent.h"
+#include "solve/icp/tape/contractor.h"
+#include "solve/icp/tape/descent.h"
 
 namespace rondo::solve::icp {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "base/stop.h"
 #include "interval/batch.h"
-#include "solve/icp/tape.h"
+#include "solve/icp/tape/tape.h"
 
 namespace rondo::solve::icp {
 

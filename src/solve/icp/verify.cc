@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "verdict/truth.h"
+
 namespace rondo::solve::icp {
 namespace {
 
@@ -90,7 +92,7 @@ std::optional<Solution> Verifier::AtPoint(const std::vector<double>& point) {
   PointChecker original(arena_, solution.values);
   PointChecker& judge = *exact ? original : checker;
   for (const TermId f : *exact ? lowered_.conjuncts : formulas_) {
-    if (judge.Check(f) != Truth::kTrue) return std::nullopt;
+    if (judge.Check(f) != verdict::Truth::kTrue) return std::nullopt;
   }
   return solution;
 }
@@ -106,7 +108,7 @@ std::optional<Solution> Verifier::NearPoint(const std::vector<double>& point) {
   for (size_t v = 0; v < point.size(); ++v)
     around.Widen(tape_.variables[v].term, {(*box)[2 * v], (*box)[2 * v + 1]});
   for (const TermId f : others_) {
-    if (around.Check(f) != Truth::kTrue) return std::nullopt;
+    if (around.Check(f) != verdict::Truth::kTrue) return std::nullopt;
   }
   // The equations must be defined throughout the box.
   for (const TermId e : equations_) {

@@ -1,7 +1,7 @@
 #include "solve/z3/translate.h"
 
 #include "base/check.h"
-#include "expr/smtlib.h"
+#include "expr/smtlib/smtlib.h"
 #include "expr/substitute.h"
 
 namespace rondo::solve::z3 {

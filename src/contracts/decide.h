@@ -1,0 +1,21 @@
+#pragma once
+
+#include <functional>
+
+#include "base/stop.h"
+#include "contracts/contract.h"
+
+namespace rondo::contracts {
+
+struct DecideOptions {
+  double timeout = 60;                           ///< seconds for each contract
+  unsigned jobs = 0;                             ///< threads; 0: one for each core
+  uint64_t seed = 1;                             ///< of the trajectories that look for a violation
+  bool certify = true;                           ///< of sweeps: have what is proved checked
+  std::function<void(size_t, size_t)> progress;  ///< parts of the initial set that are proved, and open
+};
+
+/// Decides one contract by reachability; its outcome, or why it is impossible, goes into the result.
+void DecideContract(ContractResult& result, const DecideOptions& options, const base::StopToken& stop);
+
+}  // namespace rondo::contracts

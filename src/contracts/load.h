@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "contracts/contract.h"
+#include "workspace/koord_files.h"
+#include "workspace/module_files.h"
+
+namespace rondo::contracts {
+
+/// The contracts of the motions that choreographies use; without any, of all robot types, as far as they have
+/// controllers or dynamics and their parameters have values or ranges.
+/// `reduce`: use that places do not matter, where they do not, but keep the parameter `keep`. `left_out`:
+/// motions of robot types that cannot be looked at alone, and why.
+std::vector<ContractResult> ContractsOf(workspace::LoadedModule& motion, bool reduce = true,
+                                        std::string_view keep = "",
+                                        std::vector<std::string>* left_out = nullptr);
+
+/// The models that the platforms of a Koord program name, read from their files.
+struct Platforms {
+  std::vector<std::unique_ptr<workspace::LoadedModule>> files;
+  std::vector<std::unique_ptr<robot::World>> worlds;
+};
+
+/// The controller assumptions of the program whose modules have a platform.
+/// `loose`: a parameter of the program or of the models that may have any value between two bounds.
+std::vector<ContractResult> PortContractsOf(const workspace::LoadedKoord& koord, Platforms& platforms,
+                                            workspace::Session& session, const robot::Loose* loose = nullptr);
+
+/// Files with contracts, and what they are about.
+struct LoadedContracts {
+  std::unique_ptr<workspace::LoadedKoord> koord;
+  std::unique_ptr<workspace::LoadedModule> motion;
+  Platforms platforms;
+  std::vector<ContractResult> results;
+  std::vector<std::string> left_out;  ///< motions that cannot be looked at alone, and why
+};
+
+/// The contracts of robots and choreographies (`.rondo`), or of one Koord program. False after an error,
+/// which is in the session. `reduce`: as for ContractsOf; `loose` is kept.
+bool LoadContracts(const std::vector<std::string>& files, const std::string& spec, const robot::Loose* loose,
+                   bool reduce, workspace::Session& session, LoadedContracts& loaded);
+
+}  // namespace rondo::contracts

@@ -1,0 +1,175 @@
+#include "contracts/tube_certificate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "contracts/contract_file.h"
+
+namespace rondo::contracts {
+
+namespace {
+
+constexpr const char* kFormat = "rondo-tube/1";
+
+using reach::certify::Certificate;
+using reach::certify::PartRecord;
+
+PartRecord::Step StepOf(const reach::StepRecord& record) {
+  using From = reach::StepRecord::Kind;
+  using To = PartRecord::Step::Kind;
+  PartRecord::Step step;
+  step.kind = record.kind == From::kStep    ? To::kStep
+              : record.kind == From::kCross ? To::kCross
+              : record.kind == From::kSplit ? To::kSplit
+                                            : To::kSeveral;
+  step.length = record.length;
+  step.degree = record.degree;
+  step.event = record.event;
+  step.together = record.together;
+  step.symbol = record.symbol;
+  for (const auto& [exponents, factor] : record.time)
+    step.time.emplace_back(std::vector<uint32_t>(exponents.begin(), exponents.end()), factor);
+  return step;
+}
+
+constexpr std::pair<const char*, PartRecord::Step::Kind> kKinds[] = {
+    {"cross", PartRecord::Step::Kind::kCross},
+    {"split", PartRecord::Step::Kind::kSplit},
+    {"several", PartRecord::Step::Kind::kSeveral}};
+
+// A step is [length, degree]; anything else is an object.
+nlohmann::json ToJson(const PartRecord::Step& step) {
+  if (step.kind == PartRecord::Step::Kind::kStep) return {step.length, step.degree};
+  nlohmann::json json{{"length", step.length}, {"degree", step.degree}};
+  for (const auto& [name, kind] : kKinds) {
+    if (kind == step.kind) json["kind"] = name;
+  }
+  if (step.kind == PartRecord::Step::Kind::kSplit) json["symbol"] = step.symbol;
+  if (step.kind == PartRecord::Step::Kind::kCross) {
+    json["event"] = step.event;
+    json["together"] = step.together;
+    json["time"] = step.time;
+  }
+  return json;
+}
+
+// Reads what SaveTube writes. Throws nlohmann's exceptions, or clears `good`.
+struct Reader {
+  bool good = true;
+
+  size_t Whole(const nlohmann::json& json) {
+    good = good && json.is_number_unsigned();
+    return good ? json.get<size_t>() : 0;
+  }
+
+  PartRecord::Step Step(const nlohmann::json& json) {
+    PartRecord::Step step;
+    if (json.is_array()) {
+      step.length = json.at(0).get<double>();
+      step.degree = Whole(json.at(1));
+      return step;
+    }
+    step.kind = PartRecord::Step::Kind::kSeveral;
+    for (const auto& [name, kind] : kKinds) {
+      if (json.at("kind") == name) step.kind = kind;
+    }
+    step.length = json.at("length").get<double>();
+    step.degree = Whole(json.at("degree"));
+    if (step.kind == PartRecord::Step::Kind::kSplit) step.symbol = Whole(json.at("symbol"));
+    if (step.kind != PartRecord::Step::Kind::kCross) return step;
+    step.event = Whole(json.at("event"));
+    step.together = json.at("together").get<double>();
+    for (const auto& term : json.at("time")) {
+      auto& [exponents, factor] = step.time.emplace_back();
+      for (const auto& e : term.at(0))
+        exponents.push_back(static_cast<uint32_t>(std::min<size_t>(Whole(e), 255)));
+      factor = term.at(1).get<double>();
+    }
+    return step;
+  }
+
+  PartRecord Part(const nlohmann::json& json) {
+    PartRecord part;
+    for (const auto& cut : json.at("path")) part.path.push_back({Whole(cut.at(0)), cut.at(1).get<bool>()});
+    for (const auto& step : json.at("steps")) part.steps.push_back(Step(step));
+    return part;
+  }
+};
+
+}  // namespace
+
+Certificate CertificateOf(const reach::Proved& proved) {
+  Certificate certificate;
+  const auto add = [&](const std::vector<reach::Cut>& path) -> PartRecord& {
+    PartRecord& part = certificate.parts.emplace_back();
+    for (const reach::Cut& cut : path) part.path.push_back({cut.side, cut.upper});
+    return part;
+  };
+  for (const reach::Leaf& leaf : proved.leaves) {
+    PartRecord& part = add(leaf.path);
+    for (const reach::StepRecord& step : leaf.steps) part.steps.push_back(StepOf(step));
+  }
+  for (const auto& path : proved.empty) add(path);
+  return certificate;
+}
+
+void CertifyContract(ContractResult& r, const Certificate& certificate, unsigned jobs,
+                     const base::StopToken& stop) {
+  const auto begin = std::chrono::steady_clock::now();
+  r.certified = reach::certify::Check(r.made.problem, certificate, jobs, stop);
+  r.certify_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+base::Result<bool> SaveTube(const std::string& path, const TubeFile& file) {
+  nlohmann::json parts = nlohmann::json::array();
+  for (const PartRecord& part : file.certificate.parts) {
+    nlohmann::json cuts = nlohmann::json::array();
+    for (const PartRecord::Cut& cut : part.path) cuts.push_back({cut.side, cut.upper});
+    nlohmann::json steps = nlohmann::json::array();
+    for (const PartRecord::Step& step : part.steps) steps.push_back(ToJson(step));
+    parts.push_back({{"path", cuts}, {"steps", steps}});
+  }
+  nlohmann::json json = ContractToJson(kFormat, {file.files, file.spec, file.contract});
+  json["parts"] = parts;
+  return base::WriteFileAtomically(
+      path, json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
+bool IsTube(std::string_view text) {
+  const size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '{';
+}
+
+base::Result<TubeFile> ReadTube(std::string_view text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!HasFormat(json, kFormat)) return base::Error{fmt::format("this is no JSON of the format {}", kFormat)};
+  TubeFile file;
+  const auto name = ContractFromJson(json);
+  if (!name) return base::Error{"it does not say of which contract it is"};
+  Reader reader;
+  try {
+    for (const auto& part : json.at("parts")) file.certificate.parts.push_back(reader.Part(part));
+  } catch (const nlohmann::json::exception&) {
+    reader.good = false;
+  }
+  if (!reader.good) return base::Error{"its parts are not what they should be"};
+  file.files = name->files;
+  file.spec = name->spec;
+  file.contract = name->contract;
+  return file;
+}
+
+base::Result<reach::certify::Acceptance> CheckTube(const TubeFile& file, workspace::Session& session,
+                                                   const base::StopToken& stop) {
+  LoadedContracts loaded;
+  const auto found = FindContract({file.files, file.spec, file.contract}, session, loaded);
+  if (!found.ok()) return found.error();
+  return reach::certify::Check(found.value()->made.problem, file.certificate, 0, stop);
+}
+
+}  // namespace rondo::contracts

@@ -1,0 +1,171 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diag/diagnostic.h"
+#include "koord/prove/execution/vocabulary.h"
+
+/// Symbolic execution of Koord: expressions become terms, an event becomes its guard and the values that it
+/// leaves (Koord paper, Figs. 6-8; rules are named at the code that follows them).
+namespace rondo::koord {
+
+/// What must hold for an operation to be defined, where control reaches it.
+enum class CheckKind : uint8_t { kIndex, kDivision, kRemove, kUnrolling, kReturn, kChoice };
+struct DefinednessCheck {
+  CheckKind kind;
+  diag::Span span;
+  TermId reached;
+  TermId holds;
+};
+
+/// A read of something that other robots or the environment write: for the table of a witness.
+struct ReadRecord {
+  size_t variable;
+  TermId index;  ///< the robot whose cell was read; invalid for a port or a variable shared by all
+  TermId value;
+  TermId reached;
+};
+
+/// A write to a variable that every robot may write. No index: to the whole.
+struct SharedWrite {
+  size_t variable;
+  TermId condition;
+  std::vector<TermId> indices;  ///< of a cell, or of the part of an array that has all cells behind them
+};
+
+/// What one robot does when it executes an event, in terms of the values at the start of the round.
+struct Effect {
+  TermId enabled;
+  TermId locks;  ///< does it take the lock of the event?
+  TermId stops;
+  TermId chosen;              ///< what `any` chooses is among its values
+  std::vector<TermId> value;  ///< afterwards: its own cell of what exists for each robot, else the whole
+  std::vector<SharedWrite> writes;
+  std::vector<DefinednessCheck> checks;
+  std::vector<ReadRecord> reads;
+};
+
+struct ExecutionOptions {
+  int64_t unrolling = 256;     ///< iterations of one loop
+  bool expand_robots = false;  ///< quantifiers over robots become conjunctions; N_sys must be fixed
+};
+
+class Executor {
+ public:
+  Executor(Vocabulary& vocabulary, diag::Diagnostics& diagnostics, ExecutionOptions options = {});
+
+  /// Rule SelectEvent and the statements of the event, for `robot`, from `start`. Everything is read from the
+  /// robot's own copy: the values at `start` and its own writes.
+  Effect Run(const EventDef& event, const View& start, TermId robot);
+  /// The `init` blocks in order, as one event without guard.
+  Effect RunInit(const View& start, TermId robot);
+
+  /// An expression of a specification at `view`. `robot` stands for the robot of names without one; it is
+  /// only looked at if there are such names. `old` is the moment of `old(...)`, or nullptr.
+  TermId Specification(ExprId e, const View& view, TermId robot, const View* old,
+                       const std::map<uint32_t, TermId>& bindings);
+  /// An initial value for `robot`: an expression over parameters, as a value of `type`. Reports it if it may
+  /// have none.
+  TermId Value(ExprId e, TypeId type, const View& parameters, TermId robot);
+  bool expands_robots() const { return options_.expand_robots; }
+  /// Did the last specification mention the robot?
+  bool used_robot() const { return used_robot_; }
+  /// What must hold for the specifications evaluated since the last call to have values: each operation of
+  /// theirs is defined where it is reached.
+  std::vector<DefinednessCheck> TakeSpecificationChecks() { return std::exchange(specification_checks_, {}); }
+
+ private:
+  struct State {
+    std::vector<TermId> value;
+    TermId path;       // control reaches this point
+    TermId broke;      // left the innermost loop
+    TermId continued;  // left the current iteration
+    TermId ended;      // left the event or function
+    TermId locked;
+    TermId stopped;
+    TermId result;  // of the function that is being executed
+  };
+  struct Frame {
+    const View* view = nullptr;
+    const View* old = nullptr;
+    TermId robot;
+    bool in_specification =
+        false;  // a function is executed for its value: names mean what they mean at `view`
+    State* state = nullptr;
+    Effect* effect = nullptr;
+    std::map<uint32_t, TermId> bindings;
+  };
+
+  State StartState(const View& start, TermId robot);
+  Effect Finish(State& state, Effect effect);
+
+  // evaluate.cc
+  TermId Eval(ExprId id);
+  TermId EvalAs(ExprId id, TypeId type);
+  TermId As(TermId term, SortId sort);
+  TermId Unary(const lang::Expr& e);
+  TermId Binary(const lang::Expr& e);
+  TermId Arithmetic(const lang::Expr& e);
+  TermId Membership(const lang::Expr& e);
+  /// What `+` makes of strings does not matter to any proof, only that it is a function.
+  TermId Concatenate(TermId a, TermId b);
+  TermId Quantifier(ExprId id, const lang::Expr& e);
+  TermId Any(ExprId id, const lang::Expr& e);
+  TermId ReadVariable(size_t variable);
+  TermId ReadCell(size_t variable, TermId robot, ExprId at);
+  TermId Index(ExprId id, const lang::Expr& e);
+  TermId Junction(bool conjunction, const std::vector<TermId>& parts);
+  TermId Robot();
+  bool InProgram() const { return frame_.state != nullptr && !frame_.in_specification; }
+  /// Evaluates `e` where control reaches it only if `condition` holds.
+  TermId Under(TermId condition, ExprId e);
+  void Check(CheckKind kind, diag::Span span, TermId holds);
+  TermId Reached() const;
+
+  // calls.cc
+  TermId Call(ExprId id, const lang::Expr& e);
+  TermId CallFunction(const lang::Expr& e, size_t function);
+  TermId CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type);
+  TermId Inline(const lang::Expr& e, const Function& function);
+
+  // execute.cc
+  void Body(const std::vector<Stmt>& body);
+  void Execute(const Stmt& stmt);
+  void If(const Stmt& stmt);
+  void LoopIn(const Stmt& stmt);
+  void LoopRange(const Stmt& stmt);
+  void InLoop(const std::function<void()>& iterations);
+  void Assign(ExprId target, TermId value);
+  void AssignRoot(size_t variable, TermId value, TermId robot, std::vector<TermId> indices);
+  void AssignCell(ExprId target, TermId value);
+  std::optional<size_t> SharedArrayOf(ExprId target, std::vector<ExprId>& indices) const;
+  void Method(const Stmt& stmt);
+  State Merge(TermId condition, const State& then, const State& otherwise);
+  TermId Live() const;
+  /// The declared length of an array; of a list, a bound that an invariant or assumption states.
+  std::optional<int64_t> LengthBound(ExprId list);
+  TermId ArrayLength(TypeId array);
+  TermId InRange(TermId index, TermId length);
+  TermId EqualValues(TermId a, TermId b, TypeId type);
+  std::optional<int64_t> ListBound(size_t variable) const;
+  std::optional<int64_t> ConstantInt(TermId term) const;
+
+  Vocabulary& vocabulary_;
+  expr::Arena& arena_;
+  const Model& model_;
+  const lang::ExprPool& exprs_;
+  diag::Diagnostics& diagnostics_;
+  ExecutionOptions options_;
+  Frame frame_;
+  std::vector<TermId> conditions_;  // of short-circuit operators around the expression in hand
+  std::vector<TermId> quantified_;  // variables of quantifiers around it
+  bool used_robot_ = false;
+  std::vector<DefinednessCheck> specification_checks_;
+};
+
+}  // namespace rondo::koord

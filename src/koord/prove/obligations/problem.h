@@ -1,0 +1,128 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "koord/prove/obligations/distances.h"
+#include "koord/prove/obligations/extremes.h"
+#include "koord/prove/obligations/theory.h"
+#include "solve/instantiate.h"
+
+namespace rondo::koord {
+
+/// A question whose answer should be "unsatisfiable" (an obligation) or "satisfiable" (a sanity check).
+struct Problem {
+  std::vector<solve::Assertion> assertions;  ///< with quantifiers
+  solve::Query query;                        ///< without; see `Problems::Ground`
+  bool complete = false;                     ///< nothing was lost on the way: satisfiable means satisfiable
+  std::vector<TermId> participants;
+  std::unordered_set<TermId> lists;  ///< whose axioms are among the assertions
+
+  /// The query, and whatever its instances do not cover: what satisfies it satisfies the problem.
+  solve::Query Whole() const;
+};
+
+/// States the proof obligations of docs/theory.md for one program and one number of robots: any (symbolic),
+/// or a small fixed one with all quantifiers over robots spelled out, whose models are witnesses.
+class Problems {
+ public:
+  struct Options {
+    std::optional<int64_t> robots;
+    bool expand = false;
+  };
+  Problems(expr::Arena& arena, const Model& model, const Options& options, diag::Diagnostics& diagnostics);
+
+  Theory& theory() { return theory_; }
+  Round& round() { return round_; }
+  bool has_init() const { return init_.has_value(); }
+  size_t columns() const { return round_.actions().size(); }
+
+  /// [Init] every initial state satisfies invariant i.
+  Problem Initially(size_t invariant);
+  /// [Step] from a state that satisfies all invariants, invariant i holds at every moment of a round in which
+  /// `action` is the first, in program order, that a participant takes (0: all skip; none: any round).
+  /// `reachable`: the state is initial as well.
+  Problem Step(size_t invariant, std::optional<size_t> action, bool reachable);
+  /// Are there robots that the denied invariant reads, whose actions are the cases of `Step`? Else a round
+  /// has one case: what any robot does.
+  bool HasCases(size_t invariant);
+  /// [Follows] at any moment, invariant i follows from the premises: invariants that hold at the same moment.
+  Problem Follows(size_t invariant, const std::vector<size_t>& premises);
+  /// [Def] every operation of the action, or of a part of the specification, is defined wherever it is
+  /// reached.
+  Problem Defined(size_t place);
+  /// The same for one operation of one robot: one of `ChecksAt(place, robot)`.
+  Problem DefinedAt(size_t place, const DefinednessCheck& check, TermId robot);
+  /// The operations of `place`, an action or `specification(part)`, as `robot` runs it.
+  std::vector<DefinednessCheck> ChecksAt(size_t place, TermId robot);
+  std::vector<DefinednessCheck> ChecksOf(size_t place) { return ChecksAt(place, robot_); }
+  /// The parts of the specification, as places behind those of the actions. Every operation must have a
+  /// value, where what is assumed of the same part holds.
+  enum class Part : uint8_t { kInvariants, kPorts, kInitial, kFacts };
+  static constexpr size_t kParts = 4;
+  size_t specification(Part part) const { return round_.actions().size() + static_cast<size_t>(part); }
+  /// What reports call an action or part of the specification.
+  std::string NameOf(size_t place) const;
+
+  /// Satisfiable if for some arguments no result of function `f` satisfies its summaries.
+  Problem ImpossibleSummary(size_t f);
+  /// [Sat] there is an initial state.
+  Problem SomeInitialState();
+  /// [Sat] general assumptions and summaries allow the values that the action computes.
+  Problem SomeValues(size_t action);
+  /// [Sat] some state that satisfies the invariants enables the event.
+  Problem SomeEnabled(size_t action);
+  /// [Sat] where the condition of promise `p` holds, the environment can keep it and all others; `with`: and
+  /// keeps them, else only the condition holds.
+  Problem SomePromise(size_t p, bool with);
+  /// [Now] where the invariants and the condition of promise `p` hold, the promise holds at t = 0.
+  Problem PromiseNow(size_t p);
+  std::vector<Theory::Promise> promises() { return theory_.Promises(round_.settled(), round_.end(), robot_); }
+
+  /// How quantifiers are instantiated from now on, and what is said of distances.
+  solve::InstantiationLimits limits;
+  Distances::Detail distances = Distances::Detail::kAll;
+
+  /// The robot of the problems about one robot.
+  TermId robot() const { return robot_; }
+  TermId size() const { return vocabulary_.robots(); }
+  bool uses_dist() const { return vocabulary_.uses_dist(); }
+  Vocabulary& vocabulary() { return vocabulary_; }
+
+ private:
+  const std::vector<solve::Assertion>& Everything(const View& view);
+  std::vector<TermId> Everyone();
+  void Instantiate(Problem& problem);
+  void AddDistances(Problem& problem);
+  Problem WithWitnesses(TermId refuted, const std::function<Problem(const std::vector<TermId>&)>& state);
+  Problem InitiallyFor(TermId refuted, const std::vector<TermId>& others);
+  Problem StepFor(TermId refuted, const std::vector<TermId>& others, std::optional<size_t> action,
+                  bool reachable);
+  std::vector<TermId> Witnesses(const Problem& problem);
+  TermId Succeeds(const std::vector<TermId>& participants);
+  TermId First(size_t action, const std::vector<TermId>& participants);
+  TermId Refute(TermId goal);
+  const Effect& EffectAt(size_t action, TermId robot);
+  std::vector<DefinednessCheck> ChecksOfPart(Part part, TermId robot);
+  Problem Undefined(size_t place, TermId undefined, TermId robot);
+  Problem Ground(std::vector<solve::Assertion> assertions, std::vector<TermId> participants);
+
+  expr::Arena& arena_;
+  const Model& model_;
+  Options options_;
+  Vocabulary vocabulary_;
+  Executor executor_;
+  Theory theory_;
+  Round round_;
+  std::optional<Round> init_;
+  TermId robot_;
+  std::map<TermId, std::vector<solve::Assertion>> everything_;  // by the array `stopped` of the view
+  std::map<TermId, std::vector<solve::Assertion>> promises_;    // by robot
+  std::vector<solve::Assertion> background_;
+  std::optional<Extremes> extremes_;
+  solve::Witnesses witnesses_;
+};
+
+}  // namespace rondo::koord

@@ -1,0 +1,155 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "koord/check/model.h"
+#include "koord/semantics/machine/code.h"
+#include "koord/semantics/machine/layout.h"
+
+namespace rondo::koord::semantics {
+
+/// A formula, or part of an event, that has no executable form, and why.
+struct Unsupported {
+  diag::Span span;
+  std::string reason;
+};
+
+/// Turns expressions and statements into code for one layout. Its rules are split over files by what they are
+/// about: expressions, quantifiers, calls, statements.
+class Compiler {
+ public:
+  Compiler(const Model& model, const Layout& layout, Heap& heap, Code& code);
+
+  /// Pushes the value of `e`, as a value of `type`.
+  uint32_t Expression(ExprId e, TypeId type);
+  /// Pushes the value of a formula.
+  uint32_t Formula(ExprId e) { return Expression(e, model_.types.boolean()); }
+  /// Runs the statements from top to bottom.
+  uint32_t Statements(const std::vector<Stmt>& body);
+  /// Sets variable `v` of the robot, or of all, to the value of `e`.
+  uint32_t Initial(size_t v, ExprId e);
+  /// Makes the code of every function that was called.
+  void Functions();
+
+  /// Did the last expression mention the robot that it is about?
+  bool used_robot() const { return used_robot_; }
+  /// Did the last statements contain `atomic`?
+  bool locks() const { return locks_; }
+  /// Why what was compiled last cannot be executed.
+  std::optional<Unsupported> TakeUnsupported();
+  /// By branch: the statement, and whether it is its `else`.
+  const std::vector<std::pair<const Stmt*, bool>>& branches() const { return branches_; }
+  /// By kLog: the type of what is logged.
+  const std::vector<TypeId>& logged() const { return logged_; }
+  /// Did some statement assign this variable?
+  bool assigned(size_t variable) const { return assigned_.contains(variable); }
+  /// Functions without a body that are called.
+  const std::vector<size_t>& externals() const { return externals_; }
+  /// Summaries that cannot be evaluated, so that calls are not checked against them.
+  const std::map<size_t, Unsupported>& unchecked_summaries() const { return unchecked_summaries_; }
+
+ private:
+  uint32_t Width(TypeId type) const { return Layout::Width(model_.types, type); }
+  size_t Emit(Op op, size_t a = 0, size_t b = 0, size_t c = 0, size_t d = 0);
+  size_t Here() const { return code_.instructions.size(); }
+  void Patch(size_t at) { code_.instructions[at].a = static_cast<uint32_t>(Here()); }
+  void Constant(Word word);
+  void Fail(diag::Span span, std::string reason);
+  uint32_t FrameOf(uint32_t binding);
+  uint32_t NewFrame(uint32_t width);
+  void Begin();
+
+  // compile_expressions.cc
+  void Gen(ExprId e);
+  void GenAs(ExprId e, TypeId type);
+  void Convert(TypeId from, TypeId to);
+  void Unary(const lang::Expr& e);
+  void Binary(ExprId id, const lang::Expr& e);
+  void Junction(const lang::Expr& e);
+  void Comparison(const lang::Expr& e);
+  void Arithmetic(ExprId id, const lang::Expr& e);
+  void Membership(const lang::Expr& e);
+  void ReadVariable(size_t variable);
+  void ReadCell(size_t variable);
+  void Index(ExprId id);
+  void Slice(ExprId base, uint32_t field);
+  /// `a[i][j]` of a variable that lies flat.
+  struct Element {
+    size_t variable;
+    std::vector<ExprId> indices;  // the outer one first
+  };
+  std::optional<Element> ElementOf(ExprId target) const;
+  /// Pushes the number of the item, or of the array of items, among those of its kind.
+  void FlatIndex(const Element& element);
+  size_t ItemsBehind(const Layout::Place& place, size_t indices) const;
+  size_t ShapeBehind(const Layout::Place& place, size_t indices);
+  uint32_t FieldOffset(TypeId record, uint32_t field) const;
+
+  // compile_quantifiers.cc
+  struct Bound {
+    uint32_t binding;
+    DomainKind kind;
+    ExprId list;
+  };
+  void Quantifier(ExprId id, const lang::Expr& e);
+  void Loop(const std::vector<Bound>& all, size_t i, ExprId body, bool forall, std::vector<size_t>& decided);
+  struct Limit {
+    ExprId value;
+    int64_t plus;
+  };
+  /// Limits of an int variable that follow from the condition of the quantifier.
+  void Limits(uint32_t binding, bool upper, const std::vector<ExprId>& conditions,
+              const std::vector<uint32_t>& unbound, std::vector<uint32_t>& seen,
+              std::vector<Limit>& limits) const;
+  bool Mentions(ExprId e, const std::vector<uint32_t>& bindings) const;
+  void Range(const std::vector<Limit>& limits, Op pick, uint32_t slot);
+
+  // compile_calls.cc
+  void Call(ExprId id, const lang::Expr& e);
+  void CallFunction(const lang::Expr& e, size_t function);
+  void CallPlain(size_t function, uint32_t argument_words, uint32_t result_words);
+  void CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type);
+
+  // compile_statements.cc
+  void Body(const std::vector<Stmt>& body);
+  void Execute(const Stmt& stmt);
+  void If(const Stmt& stmt);
+  void LoopIn(const Stmt& stmt);
+  void LoopRange(const Stmt& stmt);
+  void LoopBody(const Stmt& stmt, uint32_t index, uint32_t end, const std::vector<size_t>& before);
+  void Assign(ExprId target);
+  void Store(size_t variable);
+  void Method(const Stmt& stmt);
+  void Mark(const Stmt* stmt, bool otherwise);
+
+  const Model& model_;
+  const lang::ExprPool& exprs_;
+  const Layout& layout_;
+  Heap& heap_;
+  Code& code_;
+  diag::Span span_;
+  std::map<uint32_t, uint32_t> frames_;
+  bool used_robot_ = false;
+  bool locks_ = false;
+  bool in_summary_ = false;
+  std::optional<Unsupported> unsupported_;
+  std::map<size_t, Unsupported> unchecked_summaries_;
+  std::vector<std::pair<const Stmt*, bool>> branches_;
+  std::vector<TypeId> logged_;
+  std::vector<size_t> externals_;
+  std::set<size_t> assigned_;
+  std::vector<size_t> wanted_;  // functions whose code is still to be made
+  struct LoopJumps {
+    std::vector<size_t> breaks;
+    std::vector<size_t> continues;
+  };
+  std::vector<LoopJumps> loops_;
+  std::vector<size_t> returns_;  // jumps to the end of the statements
+  int function_ = -1;            // whose body is being compiled
+};
+
+}  // namespace rondo::koord::semantics

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "reach/certify/models/evaluate.h"
+#include "reach/certify/models/reach_set.h"
+
+namespace rondo::reach::certify {
+
+/// The image of a set under a program at one instant. Variables: states, then inputs; each input is any value
+/// within its bounds.
+class Image {
+ public:
+  /// False if a function is not defined on all of the set.
+  bool Of(const Program& program, const ReachSet& set, const interval::Box& inputs);
+
+  /// Encloses an output.
+  Interval Range(size_t output) const;
+  /// All outputs as a set.
+  ReachSet Set() const;
+
+ private:
+  std::shared_ptr<const Basis> basis_;
+  std::vector<Model> outputs_;
+  std::vector<Interval> boxes_;  ///< of outputs, from intervals
+  Eigen::MatrixXd generators_;   ///< by output
+  Eigen::VectorXd errors_;       ///< by output, the models' included
+};
+
+}  // namespace rondo::reach::certify

@@ -1,7 +1,0 @@
-#include "reach/validated/convolve_impl.h"
-
-namespace rondo::reach {
-
-extern const Convolve kPortableConvolve = ConvolveHere;
-
-}  // namespace rondo::reach

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "reach/validated/series/box_series.h"
+#include "reach/validated/series/flow_set.h"
+
+namespace rondo::reach {
+
+/// Images of sets under a program: what a controller computes at an instant, or an expression about the
+/// state. Variables: states, then inputs that can be anything within their bounds. Functions with kinks are
+/// enclosed by linear functions where it is not known on which side the set lies.
+class Map {
+ public:
+  Map(const Program& program, size_t states, std::vector<Interval> inputs,
+      std::shared_ptr<Monomials> monomials);
+
+  /// False if some function is not defined on all of the set. The results are below.
+  bool Apply(const FlowSet& set);
+  /// Encloses an output on the set, correlations of errors included.
+  Interval Range(size_t output) const;
+  /// The set of outputs, which must be as many as the states.
+  void Finish(const FlowSet& set, FlowSet& next, Eigen::Index capacity) const;
+
+ private:
+  const Program& program_;
+  size_t states_;
+  std::vector<Interval> inputs_;
+  std::shared_ptr<Monomials> monomials_;
+  ModelSeries models_;
+  BoxSeries box_;
+  std::vector<Branch> branches_;
+  std::vector<Interval> held_;
+  std::vector<Interval> gradient_;
+  Eigen::MatrixXd centre_, radius_;
+  Eigen::VectorXd error_;
+  Eigen::MatrixXd images_;    ///< of generators and slack
+  std::vector<double> more_;  ///< errors that are new, by output
+};
+
+}  // namespace rondo::reach

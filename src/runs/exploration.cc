@@ -1,0 +1,252 @@
+#include "runs/exploration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cfenv>
+#include <random>
+
+#include "koord/check/spec_labels.h"
+#include "koord/semantics/story.h"
+#include "koord/semantics/system.h"
+
+namespace rondo::runs {
+namespace {
+
+using diag::Kind;
+using explore::Ending;
+using koord::semantics::System;
+using koord::semantics::Team;
+using koord::semantics::Trouble;
+
+size_t RoundsOf(const std::vector<koord::semantics::Step>& run) {
+  return static_cast<size_t>(std::count_if(run.begin() + (run.empty() ? 0 : 1), run.end(),
+                                           [](const auto& step) { return !step.environment; }));
+}
+
+std::string Rounds(size_t n) { return n == 1 ? "1 round" : fmt::format("{} rounds", n); }
+
+void ReportBroken(Team& team, System& system, const std::vector<std::vector<koord::semantics::Word>>& path,
+                  const explore::Broken& broken, Explored& explored, diag::Diagnostics& diagnostics) {
+  const koord::Model& model = team.model();
+  const auto detail = system.detail();
+  std::feclearexcept(FE_ALL_EXCEPT);
+  const auto run = system.Explain(path, broken);
+  explored.rounded = std::fetestexcept(FE_INEXACT) != 0 || team.rounds_literals();
+  const std::string table = koord::semantics::Tell(team, run);
+  const size_t rounds = RoundsOf(run);
+  explored.broken = true;
+  switch (system.TroubleOf(broken.property)) {
+    case Trouble::kInvariant: {
+      const auto& invariant = team.invariants()[static_cast<size_t>(broken.property)];
+      explored.property = "invariant " + invariant.name;
+      const std::string when = rounds == 0 ? "an initial state violates"
+                                           : fmt::format("after {}, the team violates", Rounds(rounds));
+      auto& report = diagnostics.Report(Kind::kKoordViolated, invariant.span,
+                                        fmt::format("{} `{}`", when, invariant.name));
+      if (!run.empty()) {
+        size_t robot = 0;
+        std::vector<koord::semantics::Word> last = run.back().state;
+        team.machine().SetMemory(last.data());
+        if (!team.Holds(invariant, &robot) && invariant.per_robot)
+          report.Under(fmt::format("of robot {}", robot));
+      }
+      if (explored.rounded)
+        report.Note("doubles are rounded in this run: with exact numbers it may not exist");
+      report.Note(fmt::format("with {} robot{}:\n{}", team.robots(), team.robots() == 1 ? "" : "s", table));
+      break;
+    }
+    case Trouble::kFault: {
+      // A limit of ours says nothing about the program.
+      if (detail.fault == koord::semantics::Fault::kTooMany) {
+        explored.broken = false;
+        explored.search.ending = explore::Ending::kStates;
+        diagnostics.Report(Kind::kKoordNotChecked, detail.span, std::string(Describe(detail.fault)))
+            .Help("choose from fewer values");
+        return;
+      }
+      explored.property = "well-defined";
+      const bool start = detail.event < 0;
+      auto& report =
+          diagnostics.Report(Kind::kKoordFault, detail.span,
+                             start ? fmt::format("an initial value has no result: {}", Describe(detail.fault))
+                                   : fmt::format("robot {} fails after {}: {}", detail.robot, Rounds(rounds),
+                                                 Describe(detail.fault)));
+      if (!start) {
+        report.Under(
+            fmt::format("in event `{}`", team.events()[static_cast<size_t>(detail.event)].def->name));
+        report.Note(fmt::format("with {} robot{}:\n{}", team.robots(), team.robots() == 1 ? "" : "s", table));
+      }
+      break;
+    }
+    case Trouble::kSummary: {
+      const koord::SummaryDef& summary = *model.summaries[static_cast<size_t>(detail.summary)];
+      explored.property = "summary " + summary.function;
+      diagnostics
+          .Report(Kind::kKoordSummaryBroken, summary.span,
+                  fmt::format("a call of `{}` returns what its summary excludes", summary.function))
+          .Note(fmt::format("with {} robots, in the round after:\n{}", team.robots(), table));
+      break;
+    }
+  }
+  explored.run = koord::semantics::RunToJson(team, run);
+}
+
+// Random walks: one state after the other, each successor as likely as any other.
+void Walk(Team& team, System& system, const ExplorationOptions& options, Explored& explored,
+          diag::Diagnostics& diagnostics) {
+  std::mt19937_64 random(options.seed);
+  using State = std::vector<koord::semantics::Word>;
+  for (uint64_t walk = 0; walk < options.walks && !explored.broken && !options.stop.StopRequested(); ++walk) {
+    std::vector<State> path;
+    for (uint64_t i = 0; i <= options.steps && !options.stop.StopRequested(); ++i) {
+      std::vector<State> next;
+      const explore::Visit visit = [&](std::span<const koord::semantics::Word> state) {
+        next.emplace_back(state.begin(), state.end());
+        return explore::Seen::kNew;
+      };
+      const explore::Broken broken =
+          path.empty() ? system.Initial(visit) : system.Successors(path.back(), visit);
+      if (broken.property >= 0) {
+        if (broken.at_visited) path.push_back(next.back());
+        return ReportBroken(team, system, path, broken, explored, diagnostics);
+      }
+      if (next.empty()) break;
+      path.push_back(next[random() % next.size()]);
+      ++explored.search.transitions;
+    }
+    ++explored.walked;
+  }
+}
+
+}  // namespace
+
+std::vector<size_t> DeclaredSizes(const koord::Model& model, diag::Diagnostics& diagnostics) {
+  std::vector<size_t> sizes;
+  if (!model.exploration.robots.valid()) return sizes;
+  const lang::ExprPool& exprs = model.program->exprs;
+  const lang::Expr& e = exprs[model.exploration.robots];
+  std::vector<koord::ExprId> items{model.exploration.robots};
+  if (e.kind == lang::ExprKind::kList) items = e.args;
+  for (const koord::ExprId item : items) {
+    const lang::Expr& number = exprs[item];
+    const bool good = number.kind == lang::ExprKind::kInt && number.text.size() <= 2 && number.text != "0";
+    if (good && std::stoul(number.text) <= 64) {
+      sizes.push_back(std::stoul(number.text));
+    } else {
+      diagnostics.Report(Kind::kKoordNotExecutable, number.span,
+                         "a team that is explored has 1 to 64 robots");
+    }
+  }
+  if (items.empty())
+    diagnostics.Report(Kind::kKoordNotExecutable, e.span, "a team that is explored has 1 to 64 robots");
+  return sizes;
+}
+
+Explored Explore(const koord::Model& model, size_t robots, const ExplorationOptions& options,
+                 diag::Diagnostics& diagnostics) {
+  Explored explored;
+  explored.robots = robots;
+  const auto team = Team::Make(model, {robots, options.params, options.choices, {}}, diagnostics);
+  if (!team) {
+    explored.unusable = true;
+    return explored;
+  }
+  const size_t before = diagnostics.errors();
+  System system(*team, {options.reduce, options.symmetry, options.only}, diagnostics);
+  explored.symmetric = system.symmetric();
+  for (const auto& part : team->unchecked()) {
+    diagnostics
+        .Report(Kind::kKoordNotChecked, part.span,
+                fmt::format("runs are not checked against `{}`", part.name))
+        .Under(part.reason);
+    for (size_t i = 0; i < model.invariants.size(); ++i) {
+      if (koord::InvariantName(model, i) == part.name) explored.unchecked.push_back(part.name);
+    }
+  }
+  for (const size_t v : team->zeroed()) explored.zeroed.push_back(model.variables[v].name);
+  if (diagnostics.errors() != before) {
+    explored.unusable = true;
+    return explored;
+  }
+  {
+    // Parameters must be what the specification assumes of them.
+    std::vector<koord::semantics::Word> nothing(team->layout().words());
+    team->machine().SetMemory(nothing.data());
+    for (const auto& fact : team->facts()) {
+      if (team->Holds(fact)) continue;
+      diagnostics.Report(Kind::kKoordNoInitialState, fact.span,
+                         fmt::format("the values of the parameters contradict `{}`", fact.name));
+      explored.unusable = true;
+    }
+    if (explored.unusable) return explored;
+  }
+  if (options.walks > 0) {
+    Walk(*team, system, options, explored, diagnostics);
+  } else {
+    explore::SearchOptions search;
+    if (options.rounds) search.depth = *options.rounds * system.phases();
+    search.states = options.states;
+    search.compact = options.compact;
+    search.deadlocks = options.deadlocks;
+    search.progress = options.progress;
+    search.stop = options.stop;
+    explored.search = explore::Search(system, search);
+    explored.rounds = explored.search.depth / system.phases();
+  }
+  const auto& search = explored.search;
+  if (search.ending == Ending::kBroken && search.broken.property >= 0)
+    ReportBroken(*team, system, search.path, search.broken, explored, diagnostics);
+  if (search.ending == Ending::kDeadlock) {
+    const auto run = system.Explain(search.path, {});
+    explored.broken = true;
+    explored.property = "deadlock";
+    explored.run = koord::semantics::RunToJson(*team, run);
+    diagnostics
+        .Report(Kind::kKoordDeadlock, model.events[0]->span,
+                fmt::format("after {}, no robot can do anything", Rounds(RoundsOf(run))))
+        .Note(fmt::format("with {} robot{}:\n{}", robots, robots == 1 ? "" : "s",
+                          koord::semantics::Tell(*team, run)))
+        .Help("a robot that has finished should `stop`");
+  }
+  const bool none = options.walks == 0 && search.initial == 0 && search.ending == Ending::kComplete;
+  if (none) {
+    diagnostics
+        .Report(
+            Kind::kKoordNoInitialState,
+            team->initially().empty() ? model.events[0]->span : team->initially()[0].span,
+            fmt::format("no declared state of {} robot{} satisfies the assumptions about the initial state",
+                        robots, robots == 1 ? "" : "s"))
+        .Note(explored.zeroed.empty()
+                  ? std::string("every declared state is refused")
+                  : fmt::format("zero, false or empty at the start: {}", fmt::join(explored.zeroed, ", ")))
+        .Help("give other initial values: `explore:` and, in the block below, `NAME in [...]`");
+    explored.broken = true;
+  }
+  for (size_t i = 0; i < system.undefined().size(); ++i) {
+    if (!system.undefined()[i]) continue;
+    const auto& invariant = team->invariants()[i];
+    explored.unchecked.push_back(invariant.name);
+    diagnostics
+        .Report(Kind::kKoordNotChecked, invariant.span,
+                fmt::format("`{}` is not checked in every state", invariant.name))
+        .Under("in some state an operation in it has no value")
+        .Help("say when it is meant: `... implies ...`");
+  }
+  if (system.stuck()) {
+    explored.stuck = true;
+    const diag::Span span = team->promises().empty() ? model.events[0]->span : team->promises()[0].span;
+    diagnostics
+        .Report(Kind::kKoordStuck, span,
+                "in some state, none of the declared values of the sensors is allowed by the assumptions")
+        .Under(fmt::format("for robot {} of {}", *system.stuck(), robots))
+        .Help("declare more values for the sensors in `explore`");
+  }
+  explored.enabled = system.enabled();
+  explored.branches = team->machine().marks();
+  for (const auto& [stmt, otherwise] : team->branches())
+    explored.branch_spans.push_back(otherwise && !stmt->has_else ? diag::Span{} : stmt->span);
+  return explored;
+}
+
+}  // namespace rondo::runs

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/stop.h"
+#include "diag/diagnostic.h"
+#include "explore/search.h"
+#include "koord/check/model.h"
+#include "koord/semantics/team.h"
+
+namespace rondo::runs {
+
+struct ExplorationOptions {
+  std::optional<uint32_t> rounds;  ///< depth bound
+  uint64_t states = 100'000'000;
+  bool compact = false;
+  bool deadlocks = false;
+  bool reduce = true;
+  bool symmetry = true;
+  std::optional<size_t> only;  ///< check this invariant alone
+  uint64_t walks = 0;          ///< random walks instead of a search
+  uint64_t steps = 1000;
+  uint64_t seed = 1;
+  std::map<size_t, std::vector<koord::semantics::Word>> params;
+  std::map<size_t, std::vector<koord::semantics::Word>> choices;  ///< by variable, where none are declared
+  std::function<void(const explore::SearchOptions::Progress&)> progress;
+  base::StopToken stop;
+};
+
+/// What became of one team size.
+struct Explored {  // NOLINT(bugprone-exception-escape): moving JSON checks itself
+  size_t robots = 0;
+  explore::SearchResult search;
+  uint64_t rounds = 0;        ///< of the deepest state
+  uint64_t round_states = 0;  ///< with sensors, states are also counted in the middle of a round
+  bool symmetric = false;
+  bool broken = false;  ///< something was reported as an error
+  bool stuck = false;
+  bool rounded = false;   ///< doubles were rounded in the run that breaks something
+  bool unusable = false;  ///< the program cannot be executed: reported
+  uint64_t walked = 0;
+  nlohmann::json run;  ///< the counterexample, for `rondo replay`; null if there is none
+  std::string property;
+  std::vector<uint64_t> enabled;  ///< by event
+  std::vector<bool> branches;     ///< taken, by number
+  std::vector<diag::Span> branch_spans;
+  std::vector<std::string> unchecked;  ///< invariants that runs are not checked against
+  std::vector<std::string> zeroed;
+};
+
+/// Explores one team. Everything that is wrong is reported as a diagnostic.
+Explored Explore(const koord::Model& model, size_t robots, const ExplorationOptions& options,
+                 diag::Diagnostics& diagnostics);
+
+/// The team sizes that the `explore` section names. Empty: none, or (after a report) no numbers.
+std::vector<size_t> DeclaredSizes(const koord::Model& model, diag::Diagnostics& diagnostics);
+
+}  // namespace rondo::runs

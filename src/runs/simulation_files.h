@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+#include "sim/simulation.h"
+#include "workspace/session.h"
+
+namespace rondo::runs {
+
+/// The files of one simulation.
+struct SimulationFiles {
+  std::string program;
+  std::string spec;  ///< empty: beside the program, if there is one
+  std::string fleet;
+};
+
+/// `NAME`, `NAME.koord`, or `NAME.toml` stand for all three.
+SimulationFiles FindSimulationFiles(const std::string& file, const std::string& spec,
+                                    const std::string& fleet);
+
+/// Puts the texts of the files that were read into the options, for the trace.
+void KeepTexts(const SimulationFiles& files, const workspace::Session& session,
+               sim::SimulationOptions& options);
+
+}  // namespace rondo::runs

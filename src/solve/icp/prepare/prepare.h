@@ -1,0 +1,56 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "solve/icp/prepare/literal.h"
+#include "solve/icp/prepare/lower.h"
+#include "solve/icp/prepare/proof.h"
+#include "solve/icp/prepare/rotation.h"
+
+namespace rondo::solve::icp {
+
+/// What is known of one term: bounds and values that it does not have.
+struct Range {
+  std::optional<Rational> lo, hi;
+  bool lo_strict = false;
+  bool hi_strict = false;
+  std::vector<Rational> excluded;
+
+  /// Adds `relation bound`. Does not look for contradictions.
+  void Add(Relation relation, const Rational& bound);
+  bool IsContradiction() const;
+  /// The only value, if there is one.
+  std::optional<Rational> Only() const;
+  std::vector<Literal> Literals(TermId term) const;
+};
+
+/// A conjunction from which all that exact arithmetic can use has been used.
+struct Prepared {
+  bool contradiction = false;
+  std::map<TermId, Range> ranges;  ///< by the term of the literals: bounds of variables are among them
+  std::vector<TermId> disjunctions;
+  /// True for all values of the variables: for contraction only.
+  std::vector<Lemma> lemmas;
+  /// variable = term over the variables that are left.
+  std::vector<std::pair<TermId, TermId>> definitions;
+};
+
+/// Equivalent to the conjunction of `conjuncts`, up to the definitions: every solution of the result extends
+/// to one of the conjuncts by the definitions, and every solution of the conjuncts arises so. Uses linear
+/// equations to eliminate variables, turns bounds of square roots into bounds of their arguments, splits
+/// vanishing sums of squares, and merges all comparisons of one term; everything in exact arithmetic.
+/// `proof`, if there is one, gets the steps that a checker cannot see by itself.
+Prepared Prepare(expr::Arena& arena, const std::unordered_map<TermId, Variable>& variables,
+                 std::vector<TermId> conjuncts, std::vector<std::pair<TermId, TermId>> definitions,
+                 Proof* proof = nullptr);
+
+/// Rewrites the sums in `prepared` over rotated frames and adds their lemmas; see Rotations.
+void AddRotations(expr::Arena& arena, Prepared& prepared);
+
+/// Everything in `prepared` as formulas, lemmas apart.
+std::vector<TermId> Conjuncts(expr::Arena& arena, const Prepared& prepared);
+
+}  // namespace rondo::solve::icp

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "solve/icp/prepare/polynomial.h"
+
+namespace rondo::solve::icp {
+
+/// constant + the sum of coefficient * term is 0, whatever the values of the variables. The terms are kept
+/// whole, so that they are shared with the rest of the formula.
+struct Lemma {
+  std::vector<std::pair<expr::Rational, expr::TermId>> parts;
+  expr::Rational constant;
+};
+
+/// Finds coordinates of rotated vectors in sums: A cos u + B sin u and B cos u - A sin u, and their linear
+/// combinations, for vectors (A, B) of polynomials. Sums are rewritten over these coordinates, so that all
+/// sums about one vector share them, and the lemma |rotated vector|^2 = |vector|^2 ties them to the vector:
+/// without it, interval arithmetic must split the angle to learn that a rotation moves nothing away from the
+/// origin. In a chain of frames, |v + d|^2 = |v|^2 + 2 d v + d^2 ties the vector that leaves one frame to the
+/// one that enters the next, a link further.
+class Rotations {
+ public:
+  explicit Rotations(expr::Arena& arena) : arena_(arena) {}
+
+  /// An equal formula, its sums rewritten.
+  expr::TermId Rewrite(expr::TermId formula);
+
+  /// What ties the frames to each other: of each vector of which both coordinates were met.
+  std::vector<Lemma> Lemmas();
+
+ private:
+  using Rational = expr::Rational;
+  using TermId = expr::TermId;
+  using Complex = std::pair<Rational, Rational>;
+  /// A + i B, by monomial.
+  using Vector = std::map<expr::Monomial, Complex>;
+
+  struct Frame {
+    Vector vector;
+    TermId a, b;  ///< the vector
+    TermId p, q;  ///< its coordinates in the rotated frame
+    bool both = false;
+  };
+
+  /// The square of a vector: a sum of two squares of monic terms, with their factors.
+  struct Norm {
+    std::array<std::pair<Rational, TermId>, 2> squares;
+    TermId sum;
+  };
+
+  bool IsTotal(TermId term) const;
+  TermId RewriteSum(TermId sum);
+  TermId RewriteAngle(const expr::Polynomial& polynomial, TermId angle);
+  Frame& FrameOf(TermId angle, const Vector& vector, Complex& ratio);
+  TermId Square(TermId term);
+  Norm NormOf(TermId a, TermId b);
+  void Translations(const std::vector<Norm>& norms, std::vector<Lemma>& lemmas);
+  TermId Part(const Vector& vector, bool imaginary);
+
+  expr::Arena& arena_;
+  std::map<TermId, std::vector<Frame>> frames_;  // by angle
+};
+
+}  // namespace rondo::solve::icp

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solve/icp/tape/influence.h"
+
+namespace rondo::solve::icp {
+
+/// Runs a tape over eight boxes at once: forward to enclose every number and to see which formulas are still
+/// possible, backward to remove what the formula excludes (HC4-revise over the shared graph, Benhamou et al.
+/// 1999, with formulas as nodes). Results lane by lane, whatever the other lanes hold.
+///
+/// Sound for partial functions: an atomic formula about an undefined term is false, so arguments are
+/// restricted to domains only where the formula must be true.
+class Contractor {
+ public:
+  Contractor(const Tape& tape, const interval::Kernels& kernels);
+
+  /// `box` holds the bounds (lower, upper) of each variable in turn.
+  void Load(int lane, const double* box);
+  void Store(int lane, double* box) const;
+
+  /// Contracts all lanes, forward and backward so many times; what is known of the terms in between is kept
+  /// from one to the next. Returns those lanes that may still hold a solution.
+  Lanes Contract(int sweeps);
+  /// Encloses all values and says in which lanes the formula is possible. Contracts nothing.
+  Lanes Evaluate();
+  /// After Contract: by threshold, the lanes in which it is undecided; see InfluenceMeter.
+  void Open(std::vector<Lanes>& open) const;
+
+  /// Enclosures of the nodes.
+  const std::vector<interval::Batch>& values() const { return values_; }
+  interval::Interval ValueOf(uint32_t node, int lane) const {
+    return {-values_[node].nl[lane], values_[node].hi[lane]};
+  }
+
+ private:
+  struct Comparison {
+    Lanes less, equal, greater;  ///< what is possible
+  };
+
+  void ForwardNode(uint32_t i);
+  void Forward();
+  void Backward();
+  void BackwardNumber(uint32_t i);
+  void RequireThreshold(uint32_t i);
+  void RequireChoice(uint32_t i);
+  void Compare(uint32_t i);
+  Lanes Impossible() const;
+
+  const Tape& tape_;
+  const interval::Kernels& k_;
+  std::vector<interval::Batch> values_;  ///< by node; formulas leave theirs unused
+  std::vector<Lanes> possible_;          ///< formulas: not refuted
+  std::vector<Lanes> needed_;  ///< formulas: must be true; numbers: must exist for the formula to be true
+  std::vector<Comparison> comparisons_;
+  bool again_ = false;  ///< meet new enclosures with those of the sweep before
+};
+
+}  // namespace rondo::solve::icp

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+namespace rondo::workspace {
+
+/// Returns the text as the name of a file: letters, digits, `-` and `_`.
+std::string FileName(std::string text);
+
+/// Returns the absolute path of a file; an empty one for an empty one.
+std::string Absolute(const std::string& file);
+
+/// Returns where a run that breaks a property goes unless the user says where: a file in the folder for
+/// cached data.
+std::string DefaultRunFile(const std::string& program, const std::string& property);
+
+}  // namespace rondo::workspace
