@@ -20,6 +20,7 @@ function(rondo_precompile target)
   endif()
   if(TARGET rondo_pch)
     target_precompile_headers(${target} REUSE_FROM rondo_pch)
+    target_link_libraries(${target} PRIVATE fmt::fmt)  # is among them, and has options of its own
   endif()
 endfunction()
 

@@ -74,8 +74,8 @@ std::string ProveSummary(const koord::Report& report, const koord::ProveOptions&
       names.push_back(row.because.empty() ? row.name : fmt::format("{} ({})", row.name, row.because));
     }
     if (!names.empty())
-      text += fmt::format("{}{}: {}\n", verdict::Name(verdict), verdict == Verdict::kProved ? " " + scope : "",
-                          fmt::join(names, ", "));
+      text += fmt::format("{}{}: {}\n", verdict::Name(verdict),
+                          verdict == Verdict::kProved ? " " + scope : "", fmt::join(names, ", "));
   }
   if (!report.basis.assumed.empty())
     text += fmt::format("assumed: {}\n", fmt::join(report.basis.assumed, "; "));

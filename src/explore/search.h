@@ -50,120 +50,151 @@ struct SearchResult {
   std::vector<std::vector<Word>> path;
 };
 
+/// One breadth first search.
+template <TransitionSystem S>
+class Searcher {
+ public:
+  Searcher(S& system, const SearchOptions& options)
+      : system_(system), options_(options), visited_(system.words(), options.compact) {}
+
+  SearchResult Run() {
+    Begin();
+    while (!done_ && at_ < level_end_) {
+      if (options_.depth && result_.depth >= *options_.depth) {
+        End(Ending::kDepth);
+        break;
+      }
+      Level();
+    }
+    result_.states = visited_.size();
+    result_.seconds = Seconds();
+    result_.bytes = visited_.bytes() + parent_.capacity() * sizeof(uint32_t);
+    if (bad_ != kNone) FindPath();
+    return std::move(result_);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr uint32_t kNone = 0xffffffffu;
+
+  double Seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+
+  void End(Ending ending) {
+    result_.ending = ending;
+    done_ = true;
+  }
+
+  Seen Meet(std::span<const Word> state) {
+    if ((++result_.transitions & 0xffff) == 0 && options_.stop.StopRequested()) {
+      stopped_ = true;
+      return Seen::kStop;
+    }
+    bool fresh = false;
+    visited_.Insert(state, fresh);
+    if (!fresh) return Seen::kKnown;
+    parent_.push_back(current_);
+    if (options_.compact) next_.insert(next_.end(), state.begin(), state.end());
+    full_ = visited_.size() >= std::min<uint64_t>(options_.states, VisitedSet::kMost);
+    return full_ ? Seen::kStop : Seen::kNew;
+  }
+
+  // What became of the states that were met just now.
+  void Judge(const Broken& broken) {
+    if (broken.property >= 0) {
+      result_.broken = broken;
+      bad_ = broken.at_visited ? static_cast<uint32_t>(visited_.size() - 1) : current_;
+      End(Ending::kBroken);
+    } else if (stopped_) {
+      End(Ending::kStopped);
+    } else if (full_) {
+      End(Ending::kStates);
+    }
+  }
+
+  void Begin() {
+    Judge(system_.Initial(visit_));
+    result_.initial = visited_.size();
+    level_end_ = static_cast<uint32_t>(visited_.size());
+  }
+
+  // All states of one depth.
+  void Level() {
+    frontier_.swap(next_);
+    next_.clear();
+    for (const uint32_t first = at_; at_ < level_end_ && !done_; ++at_) {
+      current_ = at_;
+      const size_t words = state_.size();
+      const std::span<const Word> here =
+          options_.compact ? std::span<const Word>(frontier_).subspan((at_ - first) * words, words)
+                           : visited_[at_];
+      state_.assign(here.begin(), here.end());
+      if (options_.deadlocks && system_.Deadlocked(state_)) {
+        bad_ = at_;
+        End(Ending::kDeadlock);
+        break;
+      }
+      Judge(system_.Successors(state_, visit_));
+      if ((++polled_ & 0xff) == 0) Poll();
+    }
+    if (visited_.size() > level_end_) ++result_.depth;
+    level_end_ = static_cast<uint32_t>(visited_.size());
+  }
+
+  void Poll() {
+    const auto now = Clock::now();
+    if (options_.stop.StopRequested() && !done_) End(Ending::kStopped);
+    if (!options_.progress || now - last_ <= std::chrono::milliseconds(200)) return;
+    last_ = now;
+    options_.progress({visited_.size(), visited_.size() - at_, result_.depth, Seconds()});
+  }
+
+  // The numbers of the path are known; its states are found again from the initial ones.
+  void FindPath() {
+    std::vector<uint32_t> numbers;
+    for (uint32_t i = bad_; i != kNone; i = parent_[i]) numbers.insert(numbers.begin(), i);
+    for (const uint32_t number : numbers) {
+      std::vector<Word> found;
+      const Visit look = [&](std::span<const Word> candidate) {
+        if (!visited_.Is(candidate, number)) return Seen::kKnown;
+        found.assign(candidate.begin(), candidate.end());
+        return Seen::kStop;
+      };
+      if (result_.path.empty()) {
+        system_.Initial(look);
+      } else {
+        system_.Successors(result_.path.back(), look);
+      }
+      result_.path.push_back(std::move(found));
+    }
+  }
+
+  S& system_;
+  const SearchOptions& options_;
+  SearchResult result_;
+  VisitedSet visited_;
+  std::vector<uint32_t> parent_;  // by number of a state
+  std::vector<Word> frontier_;    // with hash compaction: the words of the states of this level
+  std::vector<Word> next_;
+  std::vector<Word> state_ = std::vector<Word>(system_.words());
+  const Visit visit_ = [this](std::span<const Word> state) { return Meet(state); };
+  uint32_t current_ = kNone;  // whose successors are met
+  uint32_t at_ = 0;
+  uint32_t level_end_ = 0;
+  uint32_t bad_ = kNone;
+  uint64_t polled_ = 0;
+  bool full_ = false;
+  bool stopped_ = false;  // in the middle of a state
+  bool done_ = false;
+  const Clock::time_point begin_ = Clock::now();
+  Clock::time_point last_ = begin_;
+};
+
 /// Breadth first search from all initial states.
 ///
 /// Exact unless `options.compact`. O(states) memory: the words of each state and 8 bytes more.
 template <TransitionSystem S>
 SearchResult Search(S& system, const SearchOptions& options) {
-  using Clock = std::chrono::steady_clock;
-  const auto begin = Clock::now();
-  SearchResult result;
-  VisitedSet visited(system.words(), options.compact);
-  constexpr uint32_t kNone = 0xffffffffu;
-  std::vector<uint32_t> parent;
-  std::vector<Word> frontier;  // with hash compaction: the words of the states of this level
-  std::vector<Word> next;
-  const size_t words = system.words();
-  uint32_t current = kNone;
-  bool full = false;
-  bool stopped = false;  // in the middle of a state
-  const Visit visit = [&](std::span<const Word> state) {
-    if ((++result.transitions & 0xffff) == 0 && options.stop.StopRequested()) {
-      stopped = true;
-      return Seen::kStop;
-    }
-    bool fresh = false;
-    visited.Insert(state, fresh);
-    if (!fresh) return Seen::kKnown;
-    parent.push_back(current);
-    if (options.compact) next.insert(next.end(), state.begin(), state.end());
-    full = visited.size() >= std::min<uint64_t>(options.states, VisitedSet::kMost);
-    return full ? Seen::kStop : Seen::kNew;
-  };
-  uint32_t bad = kNone;
-  const auto report = [&](const Broken& broken) {
-    if (broken.property < 0) return false;
-    result.broken = broken;
-    result.ending = Ending::kBroken;
-    bad = broken.at_visited ? static_cast<uint32_t>(visited.size() - 1) : current;
-    return true;
-  };
-  bool done = report(system.Initial(visit));
-  result.initial = visited.size();
-  uint32_t level_end = static_cast<uint32_t>(visited.size());
-  uint32_t at = 0;
-  auto last = begin;
-  uint64_t polled = 0;
-  std::vector<Word> state(words);
-  if (full && !done) result.ending = Ending::kStates;
-  done = done || full;
-  while (!done && at < level_end) {
-    if (options.depth && result.depth >= *options.depth) {
-      result.ending = Ending::kDepth;
-      break;
-    }
-    frontier.swap(next);
-    next.clear();
-    const uint32_t level_begin = at;
-    for (; at < level_end && !done; ++at) {
-      current = at;
-      const std::span<const Word> here =
-          options.compact
-              ? std::span<const Word>(frontier.data() + static_cast<size_t>(at - level_begin) * words, words)
-              : visited[at];
-      state.assign(here.begin(), here.end());
-      if (options.deadlocks && system.Deadlocked(state)) {
-        bad = at;
-        result.ending = Ending::kDeadlock;
-        done = true;
-        break;
-      }
-      done = report(system.Successors(state, visit));
-      if (!done && stopped) {
-        result.ending = Ending::kStopped;
-        done = true;
-      }
-      if (!done && full) {
-        result.ending = Ending::kStates;
-        done = true;
-      }
-      if ((++polled & 0xff) == 0) {
-        const auto now = Clock::now();
-        if (options.stop.StopRequested() && !done) {
-          result.ending = Ending::kStopped;
-          done = true;
-        }
-        if (options.progress && now - last > std::chrono::milliseconds(200)) {
-          last = now;
-          options.progress({visited.size(), visited.size() - at, result.depth,
-                            std::chrono::duration<double>(now - begin).count()});
-        }
-      }
-    }
-    if (visited.size() > level_end) ++result.depth;
-    level_end = static_cast<uint32_t>(visited.size());
-  }
-  result.states = visited.size();
-  result.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-  result.bytes = visited.bytes() + parent.capacity() * sizeof(uint32_t);
-  if (bad == kNone) return result;
-  // The numbers of the path; their states are found again from the initial ones.
-  std::vector<uint32_t> numbers;
-  for (uint32_t i = bad; i != kNone; i = parent[i]) numbers.insert(numbers.begin(), i);
-  for (const uint32_t number : numbers) {
-    std::vector<Word> found;
-    const Visit look = [&](std::span<const Word> candidate) {
-      if (!visited.Is(candidate, number)) return Seen::kKnown;
-      found.assign(candidate.begin(), candidate.end());
-      return Seen::kStop;
-    };
-    if (result.path.empty())
-      system.Initial(look);
-    else
-      system.Successors(result.path.back(), look);
-    result.path.push_back(std::move(found));
-  }
-  return result;
+  return Searcher<S>(system, options).Run();
 }
 
 }  // namespace rondo::explore

@@ -143,19 +143,12 @@ std::vector<size_t> DeclaredSizes(const koord::Model& model, diag::Diagnostics& 
   return sizes;
 }
 
-Explored Explore(const koord::Model& model, size_t robots, const ExplorationOptions& options,
-                 diag::Diagnostics& diagnostics) {
-  Explored explored;
-  explored.robots = robots;
-  const auto team = Team::Make(model, {robots, options.params, options.choices, {}}, diagnostics);
-  if (!team) {
-    explored.unusable = true;
-    return explored;
-  }
-  const size_t before = diagnostics.errors();
-  System system(*team, {options.reduce, options.symmetry, options.only}, diagnostics);
-  explored.symmetric = system.symmetric();
-  for (const auto& part : team->unchecked()) {
+namespace {
+
+// Parts of the specification that runs are not checked against.
+void ReportUnchecked(const Team& team, Explored& explored, diag::Diagnostics& diagnostics) {
+  const koord::Model& model = team.model();
+  for (const auto& part : team.unchecked()) {
     diagnostics
         .Report(Kind::kKoordNotChecked, part.span,
                 fmt::format("runs are not checked against `{}`", part.name))
@@ -164,23 +157,87 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
       if (koord::InvariantName(model, i) == part.name) explored.unchecked.push_back(part.name);
     }
   }
-  for (const size_t v : team->zeroed()) explored.zeroed.push_back(model.variables[v].name);
-  if (diagnostics.errors() != before) {
-    explored.unusable = true;
-    return explored;
+  for (const size_t v : team.zeroed()) explored.zeroed.push_back(model.variables[v].name);
+}
+
+// Parameters must be what the specification assumes of them.
+bool ParametersFit(Team& team, diag::Diagnostics& diagnostics) {
+  std::vector<koord::semantics::Word> nothing(team.layout().words());
+  team.machine().SetMemory(nothing.data());
+  bool fit = true;
+  for (const auto& fact : team.facts()) {
+    if (team.Holds(fact)) continue;
+    diagnostics.Report(Kind::kKoordNoInitialState, fact.span,
+                       fmt::format("the values of the parameters contradict `{}`", fact.name));
+    fit = false;
   }
-  {
-    // Parameters must be what the specification assumes of them.
-    std::vector<koord::semantics::Word> nothing(team->layout().words());
-    team->machine().SetMemory(nothing.data());
-    for (const auto& fact : team->facts()) {
-      if (team->Holds(fact)) continue;
-      diagnostics.Report(Kind::kKoordNoInitialState, fact.span,
-                         fmt::format("the values of the parameters contradict `{}`", fact.name));
-      explored.unusable = true;
-    }
-    if (explored.unusable) return explored;
+  return fit;
+}
+
+void ReportDeadlock(Team& team, System& system, Explored& explored, diag::Diagnostics& diagnostics) {
+  const auto run = system.Explain(explored.search.path, {});
+  explored.broken = true;
+  explored.property = "deadlock";
+  explored.run = koord::semantics::RunToJson(team, run);
+  diagnostics
+      .Report(Kind::kKoordDeadlock, team.model().events[0]->span,
+              fmt::format("after {}, no robot can do anything", Rounds(RoundsOf(run))))
+      .Note(fmt::format("with {} robot{}:\n{}", team.robots(), team.robots() == 1 ? "" : "s",
+                        koord::semantics::Tell(team, run)))
+      .Help("a robot that has finished should `stop`");
+}
+
+void ReportNoInitialState(const Team& team, Explored& explored, diag::Diagnostics& diagnostics) {
+  diagnostics
+      .Report(Kind::kKoordNoInitialState,
+              team.initially().empty() ? team.model().events[0]->span : team.initially()[0].span,
+              fmt::format("no declared state of {} robot{} satisfies the assumptions about the initial state",
+                          team.robots(), team.robots() == 1 ? "" : "s"))
+      .Note(explored.zeroed.empty()
+                ? std::string("every declared state is refused")
+                : fmt::format("zero, false or empty at the start: {}", fmt::join(explored.zeroed, ", ")))
+      .Help("give other initial values: `explore:` and, in the block below, `NAME in [...]`");
+  explored.broken = true;
+}
+
+// Invariants that have no value somewhere, and sensors that have none.
+void ReportGaps(const Team& team, const System& system, Explored& explored, diag::Diagnostics& diagnostics) {
+  for (size_t i = 0; i < system.undefined().size(); ++i) {
+    if (!system.undefined()[i]) continue;
+    const auto& invariant = team.invariants()[i];
+    explored.unchecked.push_back(invariant.name);
+    diagnostics
+        .Report(Kind::kKoordNotChecked, invariant.span,
+                fmt::format("`{}` is not checked in every state", invariant.name))
+        .Under("in some state an operation in it has no value")
+        .Help("say when it is meant: `... implies ...`");
   }
+  if (system.stuck()) {
+    explored.stuck = true;
+    const diag::Span span = team.promises().empty() ? team.model().events[0]->span : team.promises()[0].span;
+    diagnostics
+        .Report(Kind::kKoordStuck, span,
+                "in some state, none of the declared values of the sensors is allowed by the assumptions")
+        .Under(fmt::format("for robot {} of {}", *system.stuck(), team.robots()))
+        .Help("declare more values for the sensors in `explore`");
+  }
+}
+
+}  // namespace
+
+Explored Explore(const koord::Model& model, size_t robots, const ExplorationOptions& options,
+                 diag::Diagnostics& diagnostics) {
+  Explored explored;
+  explored.robots = robots;
+  explored.unusable = true;
+  const auto team = Team::Make(model, {robots, options.params, options.choices, {}}, diagnostics);
+  if (!team) return explored;
+  const size_t before = diagnostics.errors();
+  System system(*team, {options.reduce, options.symmetry, options.only}, diagnostics);
+  explored.symmetric = system.symmetric();
+  ReportUnchecked(*team, explored, diagnostics);
+  if (diagnostics.errors() != before || !ParametersFit(*team, diagnostics)) return explored;
+  explored.unusable = false;
   if (options.walks > 0) {
     Walk(*team, system, options, explored, diagnostics);
   } else {
@@ -194,54 +251,13 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
     explored.search = explore::Search(system, search);
     explored.rounds = explored.search.depth / system.phases();
   }
-  const auto& search = explored.search;
+  const explore::SearchResult& search = explored.search;
   if (search.ending == Ending::kBroken && search.broken.property >= 0)
     ReportBroken(*team, system, search.path, search.broken, explored, diagnostics);
-  if (search.ending == Ending::kDeadlock) {
-    const auto run = system.Explain(search.path, {});
-    explored.broken = true;
-    explored.property = "deadlock";
-    explored.run = koord::semantics::RunToJson(*team, run);
-    diagnostics
-        .Report(Kind::kKoordDeadlock, model.events[0]->span,
-                fmt::format("after {}, no robot can do anything", Rounds(RoundsOf(run))))
-        .Note(fmt::format("with {} robot{}:\n{}", robots, robots == 1 ? "" : "s",
-                          koord::semantics::Tell(*team, run)))
-        .Help("a robot that has finished should `stop`");
-  }
-  const bool none = options.walks == 0 && search.initial == 0 && search.ending == Ending::kComplete;
-  if (none) {
-    diagnostics
-        .Report(
-            Kind::kKoordNoInitialState,
-            team->initially().empty() ? model.events[0]->span : team->initially()[0].span,
-            fmt::format("no declared state of {} robot{} satisfies the assumptions about the initial state",
-                        robots, robots == 1 ? "" : "s"))
-        .Note(explored.zeroed.empty()
-                  ? std::string("every declared state is refused")
-                  : fmt::format("zero, false or empty at the start: {}", fmt::join(explored.zeroed, ", ")))
-        .Help("give other initial values: `explore:` and, in the block below, `NAME in [...]`");
-    explored.broken = true;
-  }
-  for (size_t i = 0; i < system.undefined().size(); ++i) {
-    if (!system.undefined()[i]) continue;
-    const auto& invariant = team->invariants()[i];
-    explored.unchecked.push_back(invariant.name);
-    diagnostics
-        .Report(Kind::kKoordNotChecked, invariant.span,
-                fmt::format("`{}` is not checked in every state", invariant.name))
-        .Under("in some state an operation in it has no value")
-        .Help("say when it is meant: `... implies ...`");
-  }
-  if (system.stuck()) {
-    explored.stuck = true;
-    const diag::Span span = team->promises().empty() ? model.events[0]->span : team->promises()[0].span;
-    diagnostics
-        .Report(Kind::kKoordStuck, span,
-                "in some state, none of the declared values of the sensors is allowed by the assumptions")
-        .Under(fmt::format("for robot {} of {}", *system.stuck(), robots))
-        .Help("declare more values for the sensors in `explore`");
-  }
+  if (search.ending == Ending::kDeadlock) ReportDeadlock(*team, system, explored, diagnostics);
+  if (options.walks == 0 && search.initial == 0 && search.ending == Ending::kComplete)
+    ReportNoInitialState(*team, explored, diagnostics);
+  ReportGaps(*team, system, explored, diagnostics);
   explored.enabled = system.enabled();
   explored.branches = team->machine().marks();
   for (const auto& [stmt, otherwise] : team->branches())

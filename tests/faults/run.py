@@ -70,7 +70,12 @@ def check(faults):
 def weave(faults):
     """A copy of the sources with all faults in it; files that are as they were keep their time."""
     listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True, check=True)
-    for name in listed.stdout.splitlines():
+    names = listed.stdout.splitlines()
+    # What was moved away must not be compiled from here.
+    for path in [*SOURCE.rglob("*.cc"), *SOURCE.rglob("*.h")]:
+        if str(path.relative_to(SOURCE)) not in names and path.name != "fault_switch.h":
+            path.unlink()
+    for name in names:
         path = ROOT / name
         if not path.is_file():
             continue

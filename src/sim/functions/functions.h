@@ -1,36 +1,23 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "koord/semantics/team.h"
 #include "sim/fleet/fleet.h"
-#include "sim/functions/grid_map.h"
+#include "sim/functions/encoding.h"
 
 namespace rondo::sim {
 
-using koord::semantics::Heap;
-using koord::semantics::Word;
-
-/// How maps, scans and cells are kept in words. The handle 0 is a map of which nothing is known.
-Word EncodeMap(Heap& heap, const GridMap& map);
-std::optional<GridMap> DecodeMap(const Heap& heap, Word handle);
-Word EncodeRays(Heap& heap, const Rays& rays);
-Rays DecodeRays(const Heap& heap, Word handle);
-Word EncodePath(Heap& heap, const std::vector<Point>& path);
-std::vector<Point> DecodePath(const Heap& heap, Word handle);
-
-/// The external functions that the simulator knows, by name and signature: `pathIsClear`, `apart`, `away` on
-/// paths; `merge`, `scanToMap`, `pickFrontierPos`, `findObs`, `right`, `true_scan` on maps; planners behind
-/// callable ports.
+/// The external functions that the simulator knows, by name and signature (`kFunctions` in functions.cc is the list).
 class Functions final : public koord::semantics::Host {
  public:
   Functions(const koord::Model& model, const Fleet& fleet, uint64_t seed);
 
   /// Does the simulator compute function `f`?
-  bool Knows(size_t f) const { return f < known_.size() && known_[f] != Known::kNone; }
+  bool Knows(size_t f) const { return f < known_.size() && known_[f] != nullptr; }
   void Attach(koord::semantics::Team& team, const std::vector<std::unique_ptr<Body>>& bodies);
 
   bool Call(size_t f, size_t robot, std::span<const Word> arguments, std::span<Word> result) override;
@@ -41,27 +28,37 @@ class Functions final : public koord::semantics::Host {
   uint64_t plans() const { return plans_; }
 
  private:
-  enum class Known : uint8_t {
-    kNone,
-    kPathIsClear,
-    kApart,
-    kAway,
-    kMerge,
-    kScanToMap,
-    kPickFrontier,
-    kFindObs,
-    kRight,
-    kTrueScan,
-    kPlanner,
-    kPlannerWithObstacles,
-  };
-  Known Recognise(const koord::Function& f) const;
-  bool Planner(size_t robot, const Point& target, const World& world, std::span<Word> result);
+  using Arguments = std::span<const Word>;
+  /// Computes a function for a robot.
+  using Handler = void (Functions::*)(size_t robot, Arguments a, std::span<Word> result);
+  struct Entry;
+  static const Entry kFunctions[];
+
+  Handler Recognise(const koord::Function& f) const;
+  /// What was never drawn: nothing is known.
+  GridMap MapOf(Word handle) const;
+  Heap& heap() const { return team_->heap(); }
+
+  // On paths: metres.
+  void PathIsClear(size_t robot, Arguments a, std::span<Word> result);
+  void Apart(size_t robot, Arguments a, std::span<Word> result);
+  void Away(size_t robot, Arguments a, std::span<Word> result);
+  // On maps and scans.
+  void MergeMaps(size_t robot, Arguments a, std::span<Word> result);
+  void ScanToMap(size_t robot, Arguments a, std::span<Word> result);
+  void PickFrontier(size_t robot, Arguments a, std::span<Word> result);
+  void FindObstacles(size_t robot, Arguments a, std::span<Word> result);
+  void Right(size_t robot, Arguments a, std::span<Word> result);
+  void TrueScan(size_t robot, Arguments a, std::span<Word> result);
+  // Behind callable ports.
+  void Planner(size_t robot, Arguments a, std::span<Word> result);
+  void PlannerWithObstacles(size_t robot, Arguments a, std::span<Word> result);
+  void PlanTo(size_t robot, const Point& target, const World& world, std::span<Word> result);
 
   const koord::Model& model_;
   const Fleet& fleet_;
   uint64_t seed_;
-  std::vector<Known> known_;
+  std::vector<Handler> known_;  ///< by function of the program; nullptr: none of ours
   koord::semantics::Team* team_ = nullptr;
   const std::vector<std::unique_ptr<Body>>* bodies_ = nullptr;
   double path_clearance_;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <set>
 
-#include "expr/substitute.h"
 #include "reach/problem/bounds.h"
 
 namespace rondo::reach {
@@ -98,96 +97,105 @@ base::Result<bool> Stages::AddGuards(Stage& stage, size_t mode, std::vector<Term
   return true;
 }
 
-base::Result<std::shared_ptr<const Stage>> Stages::Make(const std::vector<Mode>& modes, bool scaled) {
-  const Problem& problem = *problem_;
-  expr::Arena& arena = *problem.arena;
-  auto stage = std::make_shared<Stage>();
-  stage->modes = modes;
-  std::vector<TermId> variables = problem.states;
+// Discrete states with one value are that value; the others may change at any time: they are inputs.
+Stages::Names Stages::NamesIn(Stage& stage, bool scaled) const {
+  const expr::Arena& arena = *problem_->arena;
+  Names names{problem_->states, 0, {}};
   std::vector<TermId> inputs;
-  for (const Input& i : problem.inputs) {
+  for (const Input& i : problem_->inputs) {
     inputs.push_back(i.term);
-    stage->dynamics.inputs.push_back(i.bounds);
+    stage.dynamics.inputs.push_back(i.bounds);
   }
-  // Discrete states with one value are that value; the others may change at any time.
-  stage->discrete.resize(problem.states.size());
-  expr::Substitution values;
+  stage.discrete.resize(problem_->states.size());
   for (size_t k = 0; k < modes_.states().size(); ++k) {
     const size_t state = modes_.states()[k];
     Interval all = Interval::Empty();
     bool one = true;
-    for (const Mode& m : modes) {
+    for (const Mode& m : stage.modes) {
       all = interval::Hull(all, Enclose(arena.number(m[k])));
-      one = one && m[k] == modes[0][k];
+      one = one && m[k] == stage.modes[0][k];
     }
-    stage->discrete[state] = all;
+    stage.discrete[state] = all;
     if (one) {
-      values.emplace(problem.states[state], modes[0][k]);
+      names.values.emplace(problem_->states[state], stage.modes[0][k]);
     } else {
-      variables[state] = stand_ins_[k];
-      inputs.push_back(problem.states[state]);
-      stage->dynamics.inputs.push_back(all);
+      names.variables[state] = stand_ins_[k];
+      inputs.push_back(problem_->states[state]);
+      stage.dynamics.inputs.push_back(all);
     }
   }
-  std::vector<TermId> outputs;
-  for (const TermId rate : problem.rates) {
-    const TermId own = expr::Substitute(arena, rate, values);
-    outputs.push_back(scaled ? arena.Mul(factor_, own) : own);
+  if (scaled) names.variables.push_back(factor_);
+  names.states = names.variables.size();
+  names.variables.insert(names.variables.end(), inputs.begin(), inputs.end());
+  return names;
+}
+
+std::vector<TermId> Stages::RatesIn(const Names& names, bool scaled) const {
+  expr::Arena& arena = *problem_->arena;
+  std::vector<TermId> rates;
+  for (const TermId rate : problem_->rates) {
+    const TermId own = expr::Substitute(arena, rate, names.values);
+    rates.push_back(scaled ? arena.Mul(factor_, own) : own);
   }
-  if (scaled) {
-    variables.push_back(factor_);
-    outputs.push_back(arena.Number(arena.Real(), Rational(0)));
-  }
-  const size_t states = variables.size();
-  variables.insert(variables.end(), inputs.begin(), inputs.end());
+  if (scaled) rates.push_back(arena.Number(arena.Real(), Rational(0)));
+  return rates;
+}
+
+// The terms of claims, guards and queries in each mode.
+base::Result<std::vector<TermId>> Stages::AddTerms(Stage& stage) {
   std::vector<TermId> terms;
-  for (size_t m = 0; m < modes.size(); ++m) {
-    auto claims = AddClaims(*stage, m, terms);
+  for (size_t m = 0; m < stage.modes.size(); ++m) {
+    auto claims = AddClaims(stage, m, terms);
     if (!claims.ok()) return claims.error();
-    auto guards = AddGuards(*stage, m, terms);
+    auto guards = AddGuards(stage, m, terms);
     if (!guards.ok()) return guards.error();
     for (size_t q = 0; q < asked_.size(); ++q) {
-      stage->queries.push_back({q, terms.size()});
-      terms.push_back(modes_.In(modes[m], asked_[q]));
+      stage.queries.push_back({q, terms.size()});
+      terms.push_back(modes_.In(stage.modes[m], asked_[q]));
     }
   }
-  outputs.insert(outputs.end(), terms.begin(), terms.end());
-  auto program = Compile(arena, variables, outputs, states);
-  if (!program.ok()) return program.error();
-  stage->dynamics.program = std::move(program).value();
-  stage->dynamics.states = states;
-  auto observed = Compile(arena, variables, terms);
-  if (!observed.ok()) return observed.error();
-  stage->observed = std::move(observed).value();
-  if (problem.controller) {
-    std::vector<TermId> updated = Updated(problem);
-    for (size_t i = 0; i < updated.size(); ++i)
-      updated[i] = stage->discrete[i] ? variables[i] : expr::Substitute(arena, updated[i], values);
-    if (scaled) updated.push_back(factor_);
-    auto map = Compile(arena, variables, updated);
-    if (!map.ok()) return map.error();
-    stage->updates = std::move(map).value();
-  }
-  const size_t certain = states + problem.inputs.size();
-  const auto depends = [&](const Program& p, size_t count) {
-    for (size_t i = 0; i < count; ++i) {
+  return terms;
+}
+
+// What a controller makes of the states.
+base::Result<bool> Stages::AddUpdates(Stage& stage, const Names& names, bool scaled) const {
+  if (!problem_->controller) return true;
+  expr::Arena& arena = *problem_->arena;
+  std::vector<TermId> updated = Updated(*problem_);
+  for (size_t i = 0; i < updated.size(); ++i)
+    updated[i] = stage.discrete[i] ? names.variables[i] : expr::Substitute(arena, updated[i], names.values);
+  if (scaled) updated.push_back(factor_);
+  auto map = Compile(arena, names.variables, updated);
+  if (!map.ok()) return map.error();
+  stage.updates = std::move(map).value();
+  return true;
+}
+
+// Does anything that moves depend on discrete states that differ?
+bool Stages::IsAmbiguous(const Stage& stage) const {
+  const size_t certain = stage.dynamics.states + problem_->inputs.size();
+  const auto depends = [&](const Program& p) {
+    for (size_t i = 0; i < stage.dynamics.states; ++i) {
       if (std::ranges::any_of(p.depends[p.outputs[i]], [&](uint32_t v) { return v >= certain; })) return true;
     }
     return false;
   };
-  stage->ambiguous =
-      depends(stage->dynamics.program, states) || (problem.controller && depends(stage->updates, states));
-  // Terms that are at most zero at the start, whatever rounding says.
+  return depends(stage.dynamics.program) || (problem_->controller && depends(stage.updates));
+}
+
+// Terms of claims that are at most zero at the start, whatever rounding says, or as long as no event happens.
+void Stages::FindCertainTerms(Stage& stage) const {
+  expr::Arena& arena = *problem_->arena;
   const std::vector<TermId> necessary = Necessary(assumed_);
   const std::set<TermId> known(necessary.begin(), necessary.end());
   expr::Substitution originals;
-  for (size_t i = 0; i < problem.copy_of.size(); ++i) {
-    if (problem.copy_of[i]) originals.emplace(problem.states[i], problem.states[*problem.copy_of[i]]);
+  for (size_t i = 0; i < problem_->copy_of.size(); ++i) {
+    if (problem_->copy_of[i]) originals.emplace(problem_->states[i], problem_->states[*problem_->copy_of[i]]);
   }
   const TermId zero = arena.Number(arena.Real(), Rational(0));
-  for (StageClaim& claim : stage->claims) {
+  for (StageClaim& claim : stage.claims) {
     for (const TermId term : claim.formula.terms) {
-      claim.implied.push_back(std::ranges::any_of(stage->guards, [&](const Guard& g) {
+      claim.implied.push_back(std::ranges::any_of(stage.guards, [&](const Guard& g) {
         return g.mode == claim.mode && g.IsComparison() && arena.Add(g.formula.terms[0], term) == zero;
       }));
       const TermId start = expr::Substitute(arena, term, originals);
@@ -195,13 +203,34 @@ base::Result<std::shared_ptr<const Stage>> Stages::Make(const std::vector<Mode>&
       // What a controller sets has another value as soon as it begins, and inputs at any time.
       const size_t at = claim.first + claim.starts_below.size();
       const bool continuous =
-          std::ranges::none_of(stage->observed.depends[stage->observed.outputs[at]], [&](uint32_t v) {
-            return v >= problem.states.size() ||
-                   (problem.controller && problem.controller->updates[v].has_value());
+          std::ranges::none_of(stage.observed.depends[stage.observed.outputs[at]], [&](uint32_t v) {
+            return v >= problem_->states.size() ||
+                   (problem_->controller && problem_->controller->updates[v].has_value());
           });
       claim.starts_below.push_back(claim.from == 0 && continuous && (number || known.contains(start)));
     }
   }
+}
+
+base::Result<std::shared_ptr<const Stage>> Stages::Make(const std::vector<Mode>& modes, bool scaled) {
+  expr::Arena& arena = *problem_->arena;
+  auto stage = std::make_shared<Stage>();
+  stage->modes = modes;
+  const Names names = NamesIn(*stage, scaled);
+  std::vector<TermId> outputs = RatesIn(names, scaled);
+  const auto terms = AddTerms(*stage);
+  if (!terms.ok()) return terms.error();
+  outputs.insert(outputs.end(), terms.value().begin(), terms.value().end());
+  auto program = Compile(arena, names.variables, outputs, names.states);
+  if (!program.ok()) return program.error();
+  stage->dynamics.program = std::move(program).value();
+  stage->dynamics.states = names.states;
+  auto observed = Compile(arena, names.variables, terms.value());
+  if (!observed.ok()) return observed.error();
+  stage->observed = std::move(observed).value();
+  if (const auto added = AddUpdates(*stage, names, scaled); !added.ok()) return added.error();
+  stage->ambiguous = IsAmbiguous(*stage);
+  FindCertainTerms(*stage);
   return std::shared_ptr<const Stage>(std::move(stage));
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 
+#include "expr/substitute.h"
 #include "reach/problem/formula.h"
 #include "reach/problem/modes.h"
 #include "reach/validated/flow/stepper.h"
@@ -83,6 +84,18 @@ class Stages {
 
  private:
   base::Result<std::shared_ptr<const Stage>> Make(const std::vector<Mode>& modes, bool scaled);
+  /// The variables of a stage's programs, how many of them are states, and discrete states that have one value.
+  struct Names {
+    std::vector<TermId> variables;
+    size_t states = 0;
+    expr::Substitution values;
+  };
+  Names NamesIn(Stage& stage, bool scaled) const;
+  std::vector<TermId> RatesIn(const Names& names, bool scaled) const;
+  base::Result<std::vector<TermId>> AddTerms(Stage& stage);
+  base::Result<bool> AddUpdates(Stage& stage, const Names& names, bool scaled) const;
+  bool IsAmbiguous(const Stage& stage) const;
+  void FindCertainTerms(Stage& stage) const;
   base::Result<bool> AddClaims(Stage& stage, size_t mode, std::vector<TermId>& terms);
   base::Result<bool> AddGuards(Stage& stage, size_t mode, std::vector<TermId>& terms);
 

@@ -81,6 +81,14 @@ class Stepper {
   bool Driven() const { return !dynamics_.inputs.empty() || !sources_.empty(); }
   const BoxSeries& Enclosure() const { return Driven() ? wide_ : rest_; }
   bool Try(const FlowSet& set, double h);
+  bool RangeSeries(double h);
+  void GuessBox();
+  void GrowBox();
+  bool KeepBranches(const FlowSet& set, double h);
+  bool EncloseRest();
+  bool EncloseLinear(double h);
+  std::optional<bool> StaysInside(double h);
+  void SumInputErrors(double h);
   Interval Polynomial(size_t node, double from, double to, bool tight) const;
   Interval Rest(size_t node, double to) const;
 
@@ -102,6 +110,8 @@ class Stepper {
   enum class Known : uint8_t { kNot, kDefined, kUndefined } observed_ = Known::kNot;
   Transition transition_;
   double h_ = 0;
+  interval::Box series_;  // the polynomials during the step, without errors
+  interval::Box box_;     // that the flow does not leave during the step
   interval::Box during_;
   Eigen::VectorXd error_;  // at the start
   Eigen::VectorXd push_;   // how fast inputs drive the state from its nominal trajectory

@@ -409,118 +409,140 @@ void ModelSeries::KinkNode(size_t node, size_t order, Branch branch, Interval he
   Radius(node, 0) = Above(0.5 * apart + norm * Roundings(4) + std::fmax(Radius(c.b, 0), Radius(c.c, 0)));
 }
 
+// The value is scratch_ times a factor.
+void ModelSeries::Scale(size_t node, size_t order, double factor, double error) {
+  double* out = Values(node, order);
+  double norm = 0;
+  for (size_t i = 0; i < count_; ++i) {
+    out[i] = scratch_[i] * factor;
+    norm += std::fabs(out[i]);
+  }
+  Radius(node, order) =
+      Above(std::fabs(factor) * error + norm * Roundings(2) + static_cast<double>(count_) * 0x1p-1070);
+}
+
+// scratch_ = from[order] - factor * scratch_; the error
+double ModelSeries::Subtracted(size_t from, size_t order, double factor, double error) {
+  const double* v = Values(from, order);
+  double norm = 0;
+  for (size_t i = 0; i < count_; ++i) {
+    const double part = factor * scratch_[i];
+    scratch_[i] = v[i] - part;
+    norm += std::fabs(v[i]) + std::fabs(part);
+  }
+  return Above(factor * error + Radius(from, order) + norm * Roundings(3) +
+               static_cast<double>(count_) * 0x1p-1070);
+}
+
+// The value is scratch_ times the inverse of a coefficient of order 0.
+void ModelSeries::Divide(size_t node, size_t order, double error) {
+  MultiplyInto(scratch_.data(), error, inverses_[node], Values(node, order), Radius(node, order));
+}
+
+bool ModelSeries::Assign(size_t node, CodeOp function, uint32_t argument) {
+  Model model;
+  if (!Function(function, argument, model)) return false;
+  std::copy(model.polynomial.begin(), model.polynomial.end(), Values(node, 0));
+  Radius(node, 0) = model.radius;
+  return true;
+}
+
+bool ModelSeries::Invert(size_t node, uint32_t argument) {
+  return last_ == 0 || Function(CodeOp::kReciprocal, argument, inverses_[node]);
+}
+
+// The value of a function, and what the orders above are divided by.
+bool ModelSeries::FunctionNode(uint32_t n) {
+  const Code& c = program_.code[n];
+  switch (c.op) {
+    case CodeOp::kReciprocal:
+      if (!Function(c.op, c.a, inverses_[n])) return false;
+      std::copy(inverses_[n].polynomial.begin(), inverses_[n].polynomial.end(), Values(n, 0));
+      Radius(n, 0) = inverses_[n].radius;
+      return true;
+    case CodeOp::kRoot:
+      if (!Assign(n, c.op, c.a)) return false;
+      Finish(n, 0);
+      if (!Invert(n, n)) return false;
+      for (double& x : inverses_[n].polynomial) x *= 0.5;
+      inverses_[n].radius *= 0.5;
+      return true;
+    case CodeOp::kLog:
+      return Assign(n, c.op, c.a) && Invert(n, c.a);
+    case CodeOp::kAtan:
+      return Assign(n, c.op, c.a) && Invert(n, c.b);
+    case CodeOp::kAtan2:
+      return Arctangent2(c.a, c.b, Values(n, 0), Radius(n, 0)) && Invert(n, c.c);
+    default:
+      return Assign(n, c.op, c.a);
+  }
+}
+
+// z' (x^2 + y^2) = x y' - y x'
+void ModelSeries::Arctangent2Order(uint32_t n, size_t order, double share) {
+  const Node& node = nodes_[n];
+  std::vector<double> total(count_);
+  const double first = Convolution(node.sums[1], order, total.data());
+  const double second = Convolution(node.sums[2], order, scratch_.data());
+  double norm = 0;
+  for (size_t i = 0; i < count_; ++i) {
+    norm += std::fabs(total[i]) + std::fabs(scratch_[i]);
+    total[i] -= scratch_[i];
+  }
+  const double third = Convolution(node.sums[0], order, scratch_.data());
+  for (size_t i = 0; i < count_; ++i) {
+    norm += std::fabs(scratch_[i]);
+    scratch_[i] = (total[i] - scratch_[i]) * share;
+  }
+  Divide(n, order, Above((first + second + third + norm * Roundings(6)) * share));
+}
+
+// A coefficient of a function above order 0: from those below, by its differential equation.
+void ModelSeries::FunctionOrder(uint32_t n, size_t order) {
+  const Code& c = program_.code[n];
+  const double share = 1 / static_cast<double>(order);
+  if (c.op == CodeOp::kAtan2) return Arctangent2Order(n, order, share);
+  const double error = Convolution(nodes_[n].sums[0], order, scratch_.data());
+  switch (c.op) {
+    case CodeOp::kReciprocal:
+      for (double& x : scratch_) x = -x;
+      return Divide(n, order, error);
+    case CodeOp::kRoot:
+      return Divide(n, order, Subtracted(c.a, order, 1, error));
+    case CodeOp::kLog:
+    case CodeOp::kAtan:
+      return Divide(n, order, Subtracted(c.a, order, share, error));
+    case CodeOp::kCosine:
+      return Scale(n, order, -share, error);
+    default:  // sine and exponential
+      return Scale(n, order, share, error);
+  }
+}
+
 bool ModelSeries::Compute(size_t order, const std::vector<Branch>& branches,
                           const std::vector<Interval>& held, uint32_t first_node, uint32_t end_node) {
-  const auto scale = [&](size_t node, double factor, double error) {
-    double* out = Values(node, order);
-    double norm = 0;
-    for (size_t i = 0; i < count_; ++i) {
-      out[i] = scratch_[i] * factor;
-      norm += std::fabs(out[i]);
-    }
-    Radius(node, order) =
-        Above(std::fabs(factor) * error + norm * Roundings(2) + static_cast<double>(count_) * 0x1p-1070);
-  };
-  const auto divided = [&](size_t node) {  // scratch_ times the inverse of an order 0
-    return [this, node, order](double error) {
-      MultiplyInto(scratch_.data(), error, inverses_[node], Values(node, order), Radius(node, order));
-    };
-  };
-  // scratch_ = from[order] - factor * scratch_; the error
-  const auto subtracted = [&](size_t from, double factor, double error) {
-    const double* v = Values(from, order);
-    double norm = 0;
-    for (size_t i = 0; i < count_; ++i) {
-      const double part = factor * scratch_[i];
-      scratch_[i] = v[i] - part;
-      norm += std::fabs(v[i]) + std::fabs(part);
-    }
-    return Above(factor * error + Radius(from, order) + norm * Roundings(3) +
-                 static_cast<double>(count_) * 0x1p-1070);
-  };
-  const auto assign = [&](size_t node, const Model& model) {
-    std::copy(model.polynomial.begin(), model.polynomial.end(), Values(node, 0));
-    Radius(node, 0) = model.radius;
-  };
-  const double share = order == 0 ? 1 : 1 / static_cast<double>(order);
-  Model model;
   for (uint32_t n = first_node; n < end_node; ++n) {
-    const Code& c = program_.code[n];
-    const Node& node = nodes_[n];
-    switch (c.op) {
+    switch (program_.code[n].op) {
       case CodeOp::kVariable:
         continue;
       case CodeOp::kLinear:
         LinearNode(n, order);
         break;
       case CodeOp::kProduct:
-        Radius(n, order) = Convolution(node.sums[0], order, Values(n, order));
+        Radius(n, order) = Convolution(nodes_[n].sums[0], order, Values(n, order));
         break;
       case CodeOp::kReciprocal:
-        if (order == 0) {
-          if (!Function(c.op, c.a, inverses_[n])) return false;
-          assign(n, inverses_[n]);
-        } else {
-          const double error = Convolution(node.sums[0], order, scratch_.data());
-          for (double& x : scratch_) x = -x;
-          divided(n)(error);
-        }
-        break;
       case CodeOp::kRoot:
-        if (order == 0) {
-          if (!Function(c.op, c.a, model)) return false;
-          assign(n, model);
-          Finish(n, 0);
-          if (last_ > 0 && !Function(CodeOp::kReciprocal, n, inverses_[n])) return false;
-          for (double& x : inverses_[n].polynomial) x *= 0.5;
-          inverses_[n].radius *= 0.5;
-        } else {
-          divided(n)(subtracted(c.a, 1, Convolution(node.sums[0], order, scratch_.data())));
-        }
-        break;
       case CodeOp::kSine:
       case CodeOp::kCosine:
       case CodeOp::kExp:
-        if (order == 0) {
-          if (!Function(c.op, c.a, model)) return false;
-          assign(n, model);
-        } else {
-          const double error = Convolution(node.sums[0], order, scratch_.data());
-          scale(n, c.op == CodeOp::kCosine ? -share : share, error);
-        }
-        break;
       case CodeOp::kLog:
-      case CodeOp::kAtan: {
-        const size_t below = c.op == CodeOp::kLog ? c.a : c.b;
-        if (order == 0) {
-          if (!Function(c.op, c.a, model)) return false;
-          assign(n, model);
-          if (last_ > 0 && !Function(CodeOp::kReciprocal, below, inverses_[n])) return false;
-        } else {
-          divided(n)(subtracted(c.a, share, Convolution(node.sums[0], order, scratch_.data())));
-        }
-        break;
-      }
+      case CodeOp::kAtan:
       case CodeOp::kAtan2:
-        if (order == 0) {
-          if (!Arctangent2(c.a, c.b, Values(n, 0), Radius(n, 0))) return false;
-          if (last_ > 0 && !Function(CodeOp::kReciprocal, c.c, inverses_[n])) return false;
-        } else {
-          // z' (x^2 + y^2) = x y' - y x'
-          std::vector<double> total(count_);
-          const double first = Convolution(node.sums[1], order, total.data());
-          const double second = Convolution(node.sums[2], order, scratch_.data());
-          double norm = 0;
-          for (size_t i = 0; i < count_; ++i) {
-            norm += std::fabs(total[i]) + std::fabs(scratch_[i]);
-            total[i] -= scratch_[i];
-          }
-          const double third = Convolution(node.sums[0], order, scratch_.data());
-          for (size_t i = 0; i < count_; ++i) {
-            norm += std::fabs(scratch_[i]);
-            scratch_[i] = (total[i] - scratch_[i]) * share;
-          }
-          divided(n)(Above((first + second + third + norm * Roundings(6)) * share));
+        if (order > 0) {
+          FunctionOrder(n, order);
+        } else if (!FunctionNode(n)) {
+          return false;
         }
         break;
       case CodeOp::kAbs:

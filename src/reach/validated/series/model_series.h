@@ -100,6 +100,14 @@ class ModelSeries {
   void MultiplyInto(const double* a, double a_radius, const Model& b, double* out, double& radius) const;
   void LinearNode(size_t node, size_t order);
   void KinkNode(size_t node, size_t order, Branch branch, Interval held);
+  void Scale(size_t node, size_t order, double factor, double error);
+  double Subtracted(size_t from, size_t order, double factor, double error);
+  void Divide(size_t node, size_t order, double error);
+  bool Assign(size_t node, CodeOp function, uint32_t argument);
+  bool Invert(size_t node, uint32_t argument);
+  bool FunctionNode(uint32_t n);
+  void Arctangent2Order(uint32_t n, size_t order, double share);
+  void FunctionOrder(uint32_t n, size_t order);
   Interval RangeOfParts(std::span<const double> polynomial, double radius) const;
 
   const Program& program_;

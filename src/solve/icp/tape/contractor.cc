@@ -183,28 +183,32 @@ void Contractor::ForwardNode(uint32_t i) {
       break;
     }
     case NodeOp::kThreshold:
-      Compare(i);
-      return;
-    case NodeOp::kAtom: {
-      const Comparison& c = comparisons_[tape_.nodes[n.a].n];
-      possible_[i] =
-          static_cast<Lanes>(((n.n & kLess) != 0 ? c.less : 0) | ((n.n & kEqual) != 0 ? c.equal : 0) |
-                             ((n.n & kGreater) != 0 ? c.greater : 0));
-      return;
-    }
+    case NodeOp::kAtom:
     case NodeOp::kAnd:
-    case NodeOp::kOr: {
-      const bool conjunction = n.op == NodeOp::kAnd;
-      Lanes all = conjunction ? 0xff : 0;
-      for (uint32_t c = n.a; c < n.a + n.n; ++c) {
-        const Lanes child = possible_[tape_.children[c]];
-        all = static_cast<Lanes>(conjunction ? all & child : all | child);
-      }
-      possible_[i] = all;
-      return;
-    }
+    case NodeOp::kOr:
+      return ForwardFormula(i);
   }
   if (again_) k_.meet(values_[i], fresh, values_[i]);
+}
+
+// What is possible of a comparison or a connective, from what is possible of its parts.
+void Contractor::ForwardFormula(uint32_t i) {
+  const Node& n = tape_.nodes[i];
+  if (n.op == NodeOp::kThreshold) return Compare(i);
+  if (n.op == NodeOp::kAtom) {
+    const Comparison& c = comparisons_[tape_.nodes[n.a].n];
+    possible_[i] =
+        static_cast<Lanes>(((n.n & kLess) != 0 ? c.less : 0) | ((n.n & kEqual) != 0 ? c.equal : 0) |
+                           ((n.n & kGreater) != 0 ? c.greater : 0));
+    return;
+  }
+  const bool conjunction = n.op == NodeOp::kAnd;
+  Lanes all = conjunction ? 0xff : 0;
+  for (uint32_t c = n.a; c < n.a + n.n; ++c) {
+    const Lanes child = possible_[tape_.children[c]];
+    all = static_cast<Lanes>(conjunction ? all & child : all | child);
+  }
+  possible_[i] = all;
 }
 
 // What is possible from the enclosure; what an earlier sweep excluded stays excluded.

@@ -41,6 +41,7 @@ class Contractor {
   };
 
   void ForwardNode(uint32_t i);
+  void ForwardFormula(uint32_t i);
   void Forward();
   void Backward();
   void BackwardNumber(uint32_t i);

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "koord/semantics/machine/registers.h"
+
+/// Arithmetic: integers of 64 bits that never wrap, Euclidean division, doubles that are always finite.
+namespace rondo::koord::semantics {
+
+/// Pops two integers and pushes what `operation` makes of them: true, if that is beyond 64 bits.
+template <typename Operation>
+[[gnu::always_inline]] inline Fault Integers(Registers& r, Operation operation) {
+  const int64_t b = ToInt(*--r.top);
+  const int64_t a = ToInt(r.top[-1]);
+  int64_t result = 0;
+  if (operation(a, b, &result)) return Fault::kOverflow;
+  r.top[-1] = FromInt(result);
+  return Fault::kNone;
+}
+
+RONDO_INSTRUCTION RunAddInt(Registers& r, const Instruction&) {
+  return Integers(r, [](int64_t a, int64_t b, int64_t* to) { return __builtin_add_overflow(a, b, to); });
+}
+
+RONDO_INSTRUCTION RunSubInt(Registers& r, const Instruction&) {
+  return Integers(r, [](int64_t a, int64_t b, int64_t* to) { return __builtin_sub_overflow(a, b, to); });
+}
+
+RONDO_INSTRUCTION RunMulInt(Registers& r, const Instruction&) {
+  return Integers(r, [](int64_t a, int64_t b, int64_t* to) { return __builtin_mul_overflow(a, b, to); });
+}
+
+/// The remainder of the Euclidean division: never negative. `b` is not 0, and a / b does not overflow.
+inline int64_t EuclideanRest(int64_t a, int64_t b) {
+  const int64_t rest = a % b;
+  return rest < 0 ? (b > 0 ? rest + b : rest - b) : rest;
+}
+
+RONDO_INSTRUCTION RunDivInt(Registers& r, const Instruction&) {
+  const int64_t b = ToInt(*--r.top);
+  const int64_t a = ToInt(r.top[-1]);
+  if (b == 0) {
+    RONDO_TOTAL(Division);
+    r.top[-1] = 0;
+    return Fault::kNone;
+  }
+  if (a == std::numeric_limits<int64_t>::min() && b == -1) return Fault::kOverflow;
+  const int64_t towards_zero = a / b;
+  r.top[-1] = FromInt(a % b < 0 ? towards_zero - (b > 0 ? 1 : -1) : towards_zero);
+  return Fault::kNone;
+}
+
+RONDO_INSTRUCTION RunModInt(Registers& r, const Instruction&) {
+  const int64_t b = ToInt(*--r.top);
+  const int64_t a = ToInt(r.top[-1]);
+  if (b == 0) {
+    RONDO_TOTAL(Division);
+    r.top[-1] = 0;
+    return Fault::kNone;
+  }
+  r.top[-1] = FromInt(b == -1 ? 0 : EuclideanRest(a, b));
+  return Fault::kNone;
+}
+
+RONDO_INSTRUCTION RunNegInt(Registers& r, const Instruction&) {
+  const int64_t a = ToInt(r.top[-1]);
+  if (a == std::numeric_limits<int64_t>::min()) return Fault::kOverflow;
+  r.top[-1] = FromInt(-a);
+  return Fault::kNone;
+}
+
+RONDO_INSTRUCTION RunAbsInt(Registers& r, const Instruction&) {
+  const int64_t a = ToInt(r.top[-1]);
+  if (a == std::numeric_limits<int64_t>::min()) return Fault::kOverflow;
+  r.top[-1] = FromInt(a < 0 ? -a : a);
+  return Fault::kNone;
+}
+
+/// Replaces the top of the stack by a double, if it is finite.
+inline Fault SetFinite(Registers& r, double value) {
+  if (!std::isfinite(value)) return Fault::kOverflow;
+  r.top[-1] = FloatWord(value);
+  return Fault::kNone;
+}
+
+RONDO_INSTRUCTION RunAddFloat(Registers& r, const Instruction&) {
+  --r.top;
+  return SetFinite(r, ToFloat(r.top[-1]) + ToFloat(r.top[0]));
+}
+
+RONDO_INSTRUCTION RunSubFloat(Registers& r, const Instruction&) {
+  --r.top;
+  return SetFinite(r, ToFloat(r.top[-1]) - ToFloat(r.top[0]));
+}
+
+RONDO_INSTRUCTION RunMulFloat(Registers& r, const Instruction&) {
+  --r.top;
+  return SetFinite(r, ToFloat(r.top[-1]) * ToFloat(r.top[0]));
+}
+
+RONDO_INSTRUCTION RunDivFloat(Registers& r, const Instruction&) {
+  --r.top;
+  const double divisor = ToFloat(r.top[0]);
+  if (divisor == 0) {
+    RONDO_TOTAL(Division);
+    r.top[-1] = 0;
+    return Fault::kNone;
+  }
+  return SetFinite(r, ToFloat(r.top[-1]) / divisor);
+}
+
+RONDO_INSTRUCTION RunNegFloat(Registers& r, const Instruction&) {
+  r.top[-1] = FloatWord(-ToFloat(r.top[-1]));
+  return Fault::kNone;
+}
+
+RONDO_INSTRUCTION RunAbsFloat(Registers& r, const Instruction&) {
+  r.top[-1] = FloatWord(std::fabs(ToFloat(r.top[-1])));
+  return Fault::kNone;
+}
+
+RONDO_INSTRUCTION RunToFloat(Registers& r, const Instruction&) {
+  r.top[-1] = FromFloat(static_cast<double>(ToInt(r.top[-1])));
+  return Fault::kNone;
+}
+
+}  // namespace rondo::koord::semantics

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "koord/semantics/machine/code.h"
+#include "koord/semantics/machine/layout.h"
+
+namespace rondo::koord::semantics {
+
+class Host;
+
+/// What the last run wrote at an address, for the first time: what was there before.
+struct Write {
+  uint32_t at;
+  Word before;
+};
+
+/// A variable, or a cell of an array, that every robot may write.
+struct Unit {
+  uint32_t at;
+  uint32_t width;
+  friend bool operator==(Unit, Unit) = default;
+};
+
+/// What a machine keeps from one run to the next, and what a run leaves behind.
+struct MachineState {
+  const Code& code;
+  const Layout& layout;
+  Heap& heap;
+  Host* host = nullptr;
+  std::function<std::string(size_t, std::span<const Word>)> show;
+  std::function<uint64_t(uint64_t)> chooser;
+  std::vector<Word> params;
+  Word* memory = nullptr;
+  const Word* old = nullptr;
+  std::vector<uint32_t> calls;  ///< where to return to
+  std::vector<Word> buffer;     ///< of a list that is being made
+  std::vector<Write> writes;
+  std::vector<Unit> units;
+  std::vector<uint32_t> logged;  ///< by address: the run that wrote it last
+  uint32_t run = 0;
+  std::vector<bool> marks;
+  bool used_default = false;
+  bool locked = false;
+  bool lock_taken = false;
+  bool stopped = false;
+  bool check_summaries = false;
+  bool in_summary = false;
+  int violated_summary = -1;
+};
+
+/// What the instructions of one run work with. A local variable of the loop, so that compilers keep it in registers:
+/// every function that takes it is inlined there.
+struct Registers {
+  MachineState& m;
+  Word* top;           ///< the first free word of the stack
+  Word* frame;         ///< local variables
+  const Word* memory;  ///< that is read: of now, or of the end of the program transition
+  uint32_t own;        ///< where the robot's block begins
+  size_t robot;
+  bool total;  ///< operations without a value have the value zero
+  uint64_t steps = 0;
+  const Instruction* next;
+};
+
+/// Marks the functions of instructions. Each returns kNone, or why the run cannot go on.
+#define RONDO_INSTRUCTION [[gnu::always_inline]] inline Fault
+
+/// Ends an instruction that has no value; in a formula it has the value zero, which the caller pushes.
+#define RONDO_TOTAL(what)                \
+  do {                                   \
+    if (!r.total) return Fault::k##what; \
+    r.m.used_default = true;             \
+  } while (false)
+
+/// The longest list, in items, and the longest text, in bytes.
+inline constexpr size_t kLongest = 1'000'000;
+/// Iterations and calls of one run.
+inline constexpr uint64_t kMostSteps = 100'000'000;
+
+/// A double as a word. Zero has one sign, so that equal numbers are equal words.
+inline Word FloatWord(double x) { return FromFloat(x + 0.0); }
+
+inline void Push(Registers& r, const Word* from, uint32_t words) {
+  for (uint32_t k = 0; k < words; ++k) *r.top++ = from[k];
+}
+
+inline void PushZeros(Registers& r, uint32_t words) {
+  for (uint32_t k = 0; k < words; ++k) *r.top++ = 0;
+}
+
+}  // namespace rondo::koord::semantics

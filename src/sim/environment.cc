@@ -1,0 +1,185 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "base/parallel.h"
+#include "sim/run.h"
+#include "sim/uniform.h"
+
+namespace rondo::sim {
+
+using diag::Kind;
+using koord::semantics::FromFloat;
+
+uint32_t Run::At(const Port& port, size_t robot) const {
+  return team_->layout().Address(port.variable, robot);
+}
+
+void Run::Sense() {
+  for (size_t r = 0; r < bodies_.size(); ++r) {
+    const Body& body = *bodies_[r];
+    for (const Port& port : ports_) {
+      Word* at = state_.data() + At(port, r);
+      const auto point = [&](const Point& p) {
+        for (size_t i = 0; i < 3; ++i) at[i] = FromFloat(p[i] + 0.0);
+      };
+      switch (port.role) {
+        case PortRole::kPosition:
+          point(body.position());
+          break;
+        case PortRole::kVelocity:
+          point(body.velocity());
+          break;
+        case PortRole::kHeading:
+          *at = FromFloat(body.yaw() + 0.0);
+          break;
+        case PortRole::kReached:
+          *at = body.reached();
+          break;
+        case PortRole::kScans:
+          *at = team_->heap().Intern(scans_[r]);
+          break;
+        case PortRole::kTarget:
+        case PortRole::kPath:
+          break;
+      }
+    }
+  }
+}
+
+// How many controller periods from one instant of this kind to the next?
+uint64_t Run::Every(double period, double step) {
+  return std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(period / step)));
+}
+
+void Run::Environment(double t) {
+  const uint64_t steps = Every(fleet_.delta, fleet_.step);
+  const double dt = fleet_.delta / static_cast<double>(steps);
+  const uint64_t monitor = Every(fleet_.monitor, dt);
+  const uint64_t pose = Every(1 / fleet_.pose_rate, dt);
+  const uint64_t scan = Every(1 / fleet_.lidar.rate, dt);
+  // Small teams are looked at after every step: fast robots are through each other soon.
+  const uint64_t touch = bodies_.size() <= 100 ? 1 : monitor;
+  report_.observed_every = static_cast<double>(touch) * dt;
+  const bool scans =
+      std::any_of(ports_.begin(), ports_.end(), [](const Port& p) { return p.role == PortRole::kScans; });
+  settled_ = state_;
+  for (auto& s : scans_) s.clear();
+  for (uint64_t i = 0; i < steps;) {
+    // Up to the next instant at which something is looked at.
+    uint64_t n = 1;
+    const auto due = [&](uint64_t every) { return (step_ + n) % every == 0; };
+    while (i + n < steps && !due(monitor) && !due(pose) && !due(touch) && !(scans && due(scan))) ++n;
+    if (!Move(n, dt, t + static_cast<double>(i) * dt)) return;
+    i += n;
+    step_ += n;
+    const double now = t + static_cast<double>(i) * dt;
+    report_.time = now;
+    if (step_ % pose == 0) {
+      for (size_t r = 0; r < bodies_.size(); ++r) recorder_.Pose(now, r, *bodies_[r]);
+    }
+    if (scans && step_ % scan == 0) Scan(now);
+    if (step_ % touch == 0 || i == steps) Observe(now);
+    if (step_ % monitor == 0 || i == steps) {
+      Sense();
+      monitor_->During(now, state_, settled_);
+    }
+  }
+  report_.time = t + fleet_.delta;
+}
+
+// All bodies, on their own: the result does not depend on the number of threads.
+bool Run::Move(uint64_t n, double dt, double t) {
+  const size_t chunks = bodies_.size() < 64 ? 1 : 8;
+  std::vector<int> bad(chunks, -1);
+  const auto work = [&](size_t chunk) {
+    for (size_t r = chunk; r < bodies_.size(); r += chunks) {
+      for (uint64_t k = 0; k < n; ++k) {
+        if (!bodies_[r]->Step(dt, fleet_.integrator) && bad[chunk] < 0) bad[chunk] = static_cast<int>(r);
+        if (bad[chunk] >= 0) return;
+      }
+    }
+  };
+  if (chunks == 1)
+    work(0);
+  else
+    base::ParallelFor(chunks, options_.jobs, work);
+  int robot = -1;
+  for (const int b : bad) {
+    if (b >= 0 && (robot < 0 || b < robot)) robot = b;
+  }
+  if (robot < 0) return true;
+  const FleetRobot& who = fleet_.robots[static_cast<size_t>(robot)];
+  diagnostics_
+      .Report(Kind::kFleetValue, who.span,
+              fmt::format("the state of `{}` is not finite behind t = {:.6g} s", who.name, t))
+      .Under(fmt::format("model `{}` with these parameters", who.model))
+      .Help("a smaller `step` in `[run]`, or other parameters, may help");
+  report_.ended = Ending::kFailed;
+  return false;
+}
+
+void Run::Scan(double now) {
+  std::vector<Rays> all(bodies_.size());
+  const auto work = [&](size_t r) {
+    Rays& rays = all[r];
+    const int beams = fleet_.lidar.beams;
+    rays.first = bodies_[r]->yaw() - std::numbers::pi;
+    rays.step = 2 * std::numbers::pi / beams;
+    rays.range = fleet_.lidar.range;
+    rays.distances.resize(static_cast<size_t>(beams));
+    const Point from = bodies_[r]->position();
+    for (int b = 0; b < beams; ++b) {
+      double d = fleet_.world.Cast(from, rays.first + b * rays.step, rays.range);
+      if (std::isfinite(d)) {
+        if (fleet_.lidar.noise > 0) d += fleet_.lidar.noise * Normal(noise_[r]);
+        if (fleet_.lidar.resolution > 0)
+          d = std::round(d / fleet_.lidar.resolution) * fleet_.lidar.resolution;
+        d = std::max(d, 0.0);
+      }
+      rays.distances[static_cast<size_t>(b)] = d;
+    }
+  };
+  if (bodies_.size() < 16) {
+    for (size_t r = 0; r < bodies_.size(); ++r) work(r);
+  } else {
+    base::ParallelFor(bodies_.size(), options_.jobs, work);
+  }
+  for (size_t r = 0; r < bodies_.size(); ++r) {
+    recorder_.Scan(now, r, all[r], bodies_[r]->yaw(), 1 / fleet_.lidar.rate);
+    for (const double x : bodies_[r]->position()) scans_[r].push_back(FromFloat(x + 0.0));
+    scans_[r].push_back(EncodeRays(team_->heap(), all[r]));
+  }
+}
+
+// Collisions and distances.
+void Run::Observe(double now) {
+  std::vector<Point> positions;
+  for (const auto& body : bodies_) positions.push_back(body->position());
+  contacts_->Move(positions);
+  const auto touching = contacts_->Touching();
+  const std::set<std::pair<int, int>> pairs(touching.begin(), touching.end());
+  const auto name = [&](int who) {
+    if (who >= 0) return fleet_.robots[static_cast<size_t>(who)].name;
+    const auto number = static_cast<size_t>(-1 - who);
+    const size_t boxes = fleet_.world.boxes.size();
+    return number < boxes ? fmt::format("box {}", number) : fmt::format("cylinder {}", number - boxes);
+  };
+  for (const auto& [a, b] : pairs) {
+    if (touching_.contains({a, b})) continue;
+    if (report_.collisions++ == 0) {
+      report_.first_collision = now;
+      report_.first_pair = fmt::format("{} and {}", name(a), name(b));
+    }
+    recorder_.Event(now, {{"event", "collision"}, {"robot", name(a)}, {"with", name(b)}});
+  }
+  touching_ = pairs;
+  if (bodies_.size() > 200) return;
+  report_.least_between_robots = std::min(report_.least_between_robots, contacts_->LeastBetweenRobots());
+  report_.least_to_obstacles = std::min(report_.least_to_obstacles, contacts_->LeastToObstacles());
+}
+
+}  // namespace rondo::sim

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "koord/semantics/round_execution.h"
+#include "sim/functions/functions.h"
+#include "sim/monitor.h"
+#include "sim/ports.h"
+#include "sim/recorder.h"
+#include "sim/simulation.h"
+
+namespace rondo::sim {
+
+/// One simulation, from the fleet to the report. Rounds in virtual time: a program transition, then the environment's
+/// turn of `delta` seconds, in controller periods.
+class Run {
+ public:
+  Run(const koord::Model& model, const Fleet& fleet, const SimulationOptions& options, trace::Writer* trace,
+      diag::Diagnostics& diagnostics)
+      : model_(model),
+        fleet_(fleet),
+        options_(options),
+        diagnostics_(diagnostics),
+        recorder_(trace, fleet),
+        functions_(model, fleet, options.seed),
+        random_(options.seed) {}
+
+  SimulationReport Go();
+
+ private:
+  // Before the first round.
+  std::optional<std::vector<Word>> ValueOf(const std::string& name, const FleetValue& given, size_t variable);
+  int Find(const std::string& name) const;
+  bool MakeTeam();
+  bool MakeRobots();
+  bool Start();
+  bool Initialise();
+  void Record();
+
+  // A round.
+  void Round(uint64_t k);
+  std::vector<size_t> Order(uint64_t k);
+  uint32_t Choose(std::span<const uint32_t> enabled, uint64_t k, size_t robot);
+  void Command(const std::vector<koord::semantics::RoundExecution::Write>& writes, double t);
+  std::optional<GridMap> SharedMap() const;
+  void After(double t);
+
+  // The environment's turn.
+  uint32_t At(const Port& port, size_t robot) const;
+  void Sense();
+  static uint64_t Every(double period, double step);
+  void Environment(double t);
+  bool Move(uint64_t n, double dt, double t);
+  void Scan(double now);
+  void Observe(double now);
+
+  // The end.
+  static std::vector<bool> Reachable(const GridMap& map, const World& world,
+                                     const std::vector<Point>& starts);
+  void Finish();
+
+  const koord::Model& model_;
+  const Fleet& fleet_;
+  const SimulationOptions& options_;
+  diag::Diagnostics& diagnostics_;
+  Recorder recorder_;
+  Functions functions_;
+  std::unique_ptr<koord::semantics::Team> team_;
+  std::vector<Port> ports_;
+  std::vector<std::unique_ptr<Body>> bodies_;
+  std::vector<std::mt19937_64> noise_;
+  std::vector<std::vector<Word>> scans_;  // by robot: of this round
+  std::unique_ptr<Contacts> contacts_;
+  std::unique_ptr<Monitor> monitor_;
+  std::set<std::pair<int, int>> touching_;
+  std::mt19937_64 random_;
+  std::vector<Word> state_;
+  std::vector<Word> settled_;
+  std::vector<int8_t> last_map_;
+  uint64_t step_ = 0;
+  size_t collect_at_ = 2'000'000;
+  SimulationReport report_;
+};
+
+}  // namespace rondo::sim

@@ -1,0 +1,196 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "koord/semantics/machine/values.h"
+#include "sim/run.h"
+
+namespace rondo::sim {
+
+using diag::Kind;
+using koord::semantics::FromFloat;
+using koord::semantics::RoundExecution;
+using koord::semantics::Team;
+using nlohmann::json;
+
+std::optional<std::vector<Word>> Run::ValueOf(const std::string& name, const FleetValue& given,
+                                              size_t variable) {
+  auto words =
+      koord::semantics::FromJson(model_.types, team_->heap(), model_.variables[variable].type, given.value);
+  if (!words) {
+    diagnostics_.Report(
+        Kind::kFleetValue, given.span,
+        fmt::format("`{}` must be a `{}`", name, model_.types.Name(model_.variables[variable].type)));
+  }
+  return words;
+}
+
+int Run::Find(const std::string& name) const {
+  for (size_t v = 0; v < model_.variables.size(); ++v) {
+    if (model_.variables[v].name == name) return static_cast<int>(v);
+  }
+  return -1;
+}
+
+bool Run::MakeTeam() {
+  koord::semantics::TeamOptions options;
+  options.robots = fleet_.robots.size();
+  options.hosted = [&](size_t f) { return functions_.Knows(f); };
+  const size_t before = diagnostics_.errors();
+  for (const auto& [name, given] : fleet_.params) {
+    const int v = Find(name);
+    if (v < 0 || model_.variables[static_cast<size_t>(v)].kind != koord::VariableKind::kParam) {
+      diagnostics_.Report(Kind::kFleetValue, given.span,
+                          fmt::format("the program has no parameter `{}`", name));
+      continue;
+    }
+    // Parameters have no lists that need the team's heap but its own: numbers, points, truth values.
+    koord::semantics::Heap scratch;
+    const auto words = koord::semantics::FromJson(model_.types, scratch,
+                                                  model_.variables[static_cast<size_t>(v)].type, given.value);
+    if (words) {
+      options.params[static_cast<size_t>(v)] = *words;
+    } else {
+      diagnostics_.Report(Kind::kFleetValue, given.span,
+                          fmt::format("`{}` must be a `{}`", name,
+                                      model_.types.Name(model_.variables[static_cast<size_t>(v)].type)));
+    }
+  }
+  team_ = Team::Make(model_, options, diagnostics_);
+  if (team_ == nullptr || diagnostics_.errors() != before) return false;
+  for (const auto& part : team_->unchecked()) {
+    report_.unchecked.push_back(part.name);
+    diagnostics_
+        .Report(Kind::kKoordNotChecked, part.span,
+                fmt::format("runs are not checked against `{}`", part.name))
+        .Under(part.reason);
+  }
+  team_->machine().CheckSummaries(true);
+  team_->machine().SetHost(&functions_);
+  return true;
+}
+
+bool Run::MakeRobots() {
+  std::vector<double> radii;
+  for (size_t r = 0; r < fleet_.robots.size(); ++r) {
+    const FleetRobot& robot = fleet_.robots[r];
+    auto body = MakeBody(robot.model);
+    for (const auto& [name, value] : robot.parameters) body->Set(name, value);
+    body->Place(robot.position, robot.yaw);
+    radii.push_back(body->radius());
+    bodies_.push_back(std::move(body));
+    noise_.emplace_back(options_.seed * 0x9e3779b97f4a7c15U + r + 1);
+    scans_.emplace_back();
+  }
+  functions_.Attach(*team_, bodies_);
+  contacts_ = std::make_unique<Contacts>(fleet_.world, radii);
+  return true;
+}
+
+bool Run::Start() {
+  const size_t before = diagnostics_.errors();
+  state_ = team_->blank();
+  Sense();
+  koord::semantics::Machine& machine = team_->machine();
+  machine.SetMemory(state_.data());
+  machine.SetChooser([this](uint64_t possibilities) { return random_() % possibilities; });
+  // A robot holds its position until it is told something else.
+  for (size_t r = 0; r < bodies_.size(); ++r) {
+    const Point p = bodies_[r]->position();
+    for (const Port& port : ports_) {
+      if (port.role == PortRole::kPath) state_[At(port, r)] = EncodePath(team_->heap(), {p});
+      if (port.role == PortRole::kTarget) {
+        for (size_t i = 0; i < 3; ++i) state_[At(port, r) + i] = FromFloat(p[i] + 0.0);
+      }
+    }
+  }
+  const auto run = [&](const std::vector<koord::semantics::InitialCode>& code) {
+    for (const auto& i : code) {
+      const bool own = model_.variables[i.variable].PerRobot();
+      for (size_t r = 0; r < (own ? bodies_.size() : 1); ++r) {
+        if (machine.Run(i.entry, r, false)) continue;
+        diagnostics_.Report(Kind::kKoordFault, machine.fault_span(), std::string(Describe(machine.fault())))
+            .Under("in an initial value");
+        return false;
+      }
+    }
+    return true;
+  };
+  if (!run(team_->declared())) return false;
+  for (const auto& [name, given] : fleet_.initial) {
+    const int found = Find(name);
+    const auto v = static_cast<size_t>(found);
+    const bool good = found >= 0 && model_.variables[v].kind != koord::VariableKind::kSensor &&
+                      model_.variables[v].kind != koord::VariableKind::kParam && team_->layout()[v].exists &&
+                      team_->layout()[v].length == 0;
+    if (!good) {
+      diagnostics_.Report(Kind::kFleetValue, given.span,
+                          fmt::format("the program has no variable `{}` that can start with a value", name));
+      continue;
+    }
+    const auto words = ValueOf(name, given, v);
+    for (size_t r = 0; words && r < (model_.variables[v].PerRobot() ? bodies_.size() : 1); ++r)
+      std::copy(words->begin(), words->end(), state_.begin() + team_->layout().Address(v, r));
+  }
+  if (diagnostics_.errors() != before) return false;
+  machine.SetMemory(state_.data());
+  if (!run(team_->derived())) return false;
+  if (!Initialise()) return false;
+  monitor_ = std::make_unique<Monitor>(*team_, diagnostics_, [this](const Violation& v, bool first) {
+    if (first) recorder_.Event(v.first, {{"event", "violation"}, {"what", v.what}, {"robot", v.robot}});
+  });
+  Record();
+  monitor_->Initially(state_);
+  Observe(0);
+  return true;
+}
+
+// The blocks of `init`: every robot runs them once, from the declared values.
+bool Run::Initialise() {
+  if (team_->inits().empty()) return true;
+  koord::semantics::Machine& machine = team_->machine();
+  std::vector<Word> memory = state_;
+  std::vector<RoundExecution::Write> writes;
+  for (size_t r = 0; r < bodies_.size(); ++r) {
+    std::vector<koord::semantics::Machine::Write> undo;
+    for (const uint32_t entry : team_->inits()) {
+      machine.SetMemory(memory.data());
+      if (!machine.Run(entry, r, false)) {
+        diagnostics_.Report(Kind::kKoordFault, machine.fault_span(), std::string(Describe(machine.fault())))
+            .Under("in `init`");
+        return false;
+      }
+      undo.insert(undo.end(), machine.writes().begin(), machine.writes().end());
+      if (machine.stopped()) writes.push_back({team_->layout().block(r) + team_->layout().stopped(), 1});
+    }
+    for (const auto& w : undo) writes.push_back({w.at, memory[w.at]});
+    for (auto it = undo.rbegin(); it != undo.rend(); ++it) memory[it->at] = it->before;
+  }
+  for (const auto& w : writes) state_[w.at] = w.value;
+  Command(writes, 0);
+  return true;
+}
+
+void Run::Record() {
+  if (!recorder_.on()) return;
+  json robots = json::array();
+  for (size_t r = 0; r < bodies_.size(); ++r) {
+    robots.push_back({{"name", fleet_.robots[r].name},
+                      {"model", fleet_.robots[r].model},
+                      {"radius", bodies_[r]->radius()}});
+  }
+  recorder_.Run({{"format", "rondo-trace/1"},
+                 {"engine", "simulate"},
+                 {"program_name", options_.program_name},
+                 {"program", options_.program},
+                 {"spec", options_.spec},
+                 {"fleet", options_.fleet},
+                 {"seed", options_.seed},
+                 {"duration", options_.duration},
+                 {"delta", fleet_.delta},
+                 {"robots", robots}});
+  recorder_.World(fleet_);
+  for (size_t r = 0; r < bodies_.size(); ++r) recorder_.Pose(0, r, *bodies_[r]);
+}
+
+}  // namespace rondo::sim
