@@ -10,6 +10,7 @@
 #include <exception>
 #include <new>
 
+#include "base/version.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "solve/z3/z3_solver.h"
@@ -18,33 +19,36 @@ namespace rondo::driver {
 
 using verdict::ExitStatus;
 
+namespace {
+
+/// In the order of the help.
+constexpr void (*kVerbs[])(CLI::App&, ExitStatus&) = {
+    AddCheckVerb,   AddFormatVerb,  AddProveVerb, AddExploreVerb,    AddSimulateVerb, AddReplayVerb,
+    AddPlotVerb,    AddReachVerb,   AddInferVerb, AddGraphVerb,      AddProjectVerb,  AddSolveVerb,
+    AddCertifyVerb, AddExplainVerb, AddAstVerb,   AddCompletionVerb,
+};
+
+// `rondo 0.2.0 (commit 0123456789)`
+std::string VersionText() {
+  const std::string commit(base::Commit());
+  return fmt::format("rondo {}{}", base::Version(),
+                     commit.empty() ? "" : fmt::format(" (commit {})", commit));
+}
+
+}  // namespace
+
 int Main(int argc, char** argv) {
   // A reader that goes away (`rondo ... | head`) ends the output, not the program with a signal.
   ::signal(SIGPIPE, SIG_IGN);
   ExitStatus status = ExitStatus::kEstablished;
   CLI::App app{"Rondo: write, prove and run programs for teams of robots", "rondo"};
   app.require_subcommand(1);
-  app.set_version_flag("--version", "rondo 0.1.0");
+  app.set_version_flag("--version", VersionText());
   app.footer(
       "example: rondo prove examples/koord/lineform.koord\n"
       "\n"
       "exit status: 0 established, 1 wrong input, refuted or not inductive, 2 usage, 3 unknown, 4 a bug of ours");
-  AddCheckVerb(app, status);
-  AddFormatVerb(app, status);
-  AddProveVerb(app, status);
-  AddExploreVerb(app, status);
-  AddSimulateVerb(app, status);
-  AddReplayVerb(app, status);
-  AddPlotVerb(app, status);
-  AddReachVerb(app, status);
-  AddInferVerb(app, status);
-  AddGraphVerb(app, status);
-  AddProjectVerb(app, status);
-  AddSolveVerb(app, status);
-  AddCertifyVerb(app, status);
-  AddExplainVerb(app, status);
-  AddAstVerb(app, status);
-  AddCompletionVerb(app, status);
+  for (const auto add : kVerbs) add(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

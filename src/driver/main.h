@@ -1,9 +1,10 @@
 #pragma once
 
+/// Holds the entry of the command line.
 namespace rondo::driver {
 
-/// The command line `rondo VERB ...`. Returns the exit status: 0 everything asked for is established; 1 the
-/// input is wrong, or a property is refuted or not inductive; 2 usage; 3 unknown; 4 a bug of ours.
+/// Runs the command line `rondo VERB ...`. Returns the exit status: 0 everything asked for is established; 1
+/// the input is wrong, or a property is refuted or not inductive; 2 usage; 3 unknown; 4 a bug of ours.
 int Main(int argc, char** argv);
 
 }  // namespace rondo::driver

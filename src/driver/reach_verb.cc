@@ -5,13 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "contracts/discharge.h"
+#include "contracts/decide_all.h"
 #include "contracts/ranges.h"
 #include "contracts/report.h"
 #include "contracts/statistical.h"
 #include "contracts/sweep.h"
-#include "contracts/tube_certificate.h"
-#include "contracts/tube_reuse.h"
 #include "driver/command.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
@@ -69,17 +67,29 @@ class Run {
     }
     if (options_.statistical) return SampleAll();
     if (loose_) return SweepAll();
+    contracts::DecideAllOptions deciding{
+        {options_.timeout, options_.jobs, options_.seed, !options_.no_certify, {}},
+        options_.files,
+        options_.spec,
+        options_.certificates,
+        options_.ranges,
+        between_,
+        {}};
     {
       ProgressLine line;
       const InterruptScope interrupt(stop_);
-      for (size_t i = 0; i < loaded_.results.size(); ++i) Decide(i, line);
+      deciding.progress = [&](const std::string& what) { line.Show(what); };
+      decided_.emplace(loaded_, deciding, cache_);
+      decided_->Run(stop_);
+      for (const std::string& failure : decided_->failures()) PrintFailure(failure);
+      for (size_t i = 0; i < loaded_.results.size(); ++i) Keep(i);
     }
     ExitStatus status = ExitStatus::kEstablished;
     for (const contracts::ContractResult& r : loaded_.results) {
       contracts::ReportContract(r, session_.diagnostics);
       status = verdict::Worse(status, verdict::StatusOf(contracts::VerdictOf(r)));
     }
-    if (unwritten_ || wrong_range_) status = ExitStatus::kRejected;
+    if (!decided_->failures().empty() || decided_->wrong_range()) status = ExitStatus::kRejected;
     status = Finish(status);
     for (const auto& [path, svg] : pictures_) {
       if (WritePicture(path, svg, options_.json) != ExitStatus::kEstablished) status = ExitStatus::kRejected;
@@ -204,61 +214,6 @@ class Run {
         .string();
   }
 
-  void Decide(size_t index, ProgressLine& line) {
-    contracts::ContractResult& r = loaded_.results[index];
-    const std::string& name = r.made.problem.name;
-    contracts::DecideOptions options{
-        options_.timeout, options_.jobs, options_.seed, !options_.no_certify, {}};
-    options.progress = [&](size_t done, size_t open) {
-      line.Show(fmt::format("[{}/{}] {}: {} parts proved, {} open", index + 1, loaded_.results.size(), name,
-                            done, open));
-    };
-    line.Show(fmt::format("[{}/{}] {}", index + 1, loaded_.results.size(), name));
-    // The same motion elsewhere, or of another robot of the same type, is proved already.
-    contracts::TubeReuse::Cover cover;
-    if (options_.ranges.empty()) cover = reuse_.Covers(r);
-    r.same_as = cover.contract;
-    r.certified = cover.certified;
-    if (r.same_as.empty()) contracts::DecideContract(r, options, stop_);
-    if (r.outcome && std::holds_alternative<reach::Proved>(*r.outcome))
-      cover.certificate = contracts::CertificateOf(std::get<reach::Proved>(*r.outcome));
-    if (cover.certificate && !options_.no_certify && !stop_.cancelled()) {
-      line.Show(fmt::format("[{}/{}] {}: certifying", index + 1, loaded_.results.size(), name));
-      contracts::CertifyContract(r, *cover.certificate, options_.jobs, stop_);
-      if (r.IsCertified() && !options_.certificates.empty()) SaveCertificate(index, *cover.certificate);
-    }
-    if (!options_.ranges.empty()) {
-      line.Show(fmt::format("[{}/{}] {}: ranges", index + 1, loaded_.results.size(), name));
-      ranges_.resize(loaded_.results.size());
-      ranges_[index] = contracts::RangesOf(r, options_.ranges, between_, options_.jobs, stop_);
-      wrong_range_ =
-          wrong_range_ || (VerdictOf(r) == verdict::Verdict::kProved && !ranges_[index].trouble.empty());
-    }
-    contracts::StoreProved(r, cache_);
-    if (index + 1 < loaded_.results.size() && cover.certificate)
-      reuse_.Remember(r, std::move(*cover.certificate));
-    Keep(index);
-  }
-
-  void SaveCertificate(size_t index, const reach::certify::Certificate& certificate) {
-    const contracts::ContractResult& r = loaded_.results[index];
-    std::filesystem::path path = std::filesystem::path(options_.certificates) /
-                                 (workspace::FileName(r.made.problem.name) + ".tube.json");
-    if (std::ranges::find(certificates_, path.string()) != certificates_.end())
-      path.replace_filename(
-          fmt::format("{}-{}.tube.json", workspace::FileName(r.made.problem.name), index + 1));
-    std::error_code ignored;
-    std::filesystem::create_directories(path.parent_path(), ignored);
-    const auto written =
-        contracts::SaveTube(path.string(), {options_.files, options_.spec, r.made.problem.name, certificate});
-    if (written.ok()) {
-      certificates_.push_back(path.string());
-    } else {
-      unwritten_ = true;
-      PrintFailure(fmt::format("cannot write `{}`: {}", path.string(), written.error().message));
-    }
-  }
-
   // Samples establish nothing: a failure refutes, anything else stays open.
   ExitStatus SampleAll() {
     contracts::StatisticalOptions sampling = options_.sampling;
@@ -288,24 +243,28 @@ class Run {
   }
 
   ExitStatus Finish(ExitStatus status) {
+    const std::vector<contracts::Ranges> ranges =
+        decided_ ? decided_->ranges() : std::vector<contracts::Ranges>();
+    const std::vector<std::string> certificates =
+        decided_ ? decided_->certificates() : std::vector<std::string>();
     if (options_.json) {
       nlohmann::json list = nlohmann::json::array();
       for (size_t i = 0; i < loaded_.results.size(); ++i) {
         list.push_back(ToJson(loaded_.results[i]));
-        if (i < ranges_.size()) list.back()["ranges"] = ToJson(ranges_[i]);
+        if (i < ranges.size()) list.back()["ranges"] = ToJson(ranges[i]);
       }
       PrintJson({{"command", "reach"},
                  {"status", status},
                  {"contracts", list},
                  {"runs", saved_},
-                 {"certificates", certificates_},
+                 {"certificates", certificates},
                  {"left_out", loaded_.left_out},
                  {"diagnostics", diag::RenderJson(session_.sources, session_.diagnostics)}});
       return status;
     }
     if (!loaded_.results.empty()) Print(contracts::ContractTable(loaded_.results));
-    for (size_t i = 0; i < ranges_.size(); ++i)
-      Print(fmt::format("{}:\n{}", loaded_.results[i].made.problem.name, ToText(ranges_[i])));
+    for (size_t i = 0; i < ranges.size(); ++i)
+      Print(fmt::format("{}:\n{}", loaded_.results[i].made.problem.name, ToText(ranges[i])));
     for (const std::string& motion : loaded_.left_out) Print(fmt::format("not looked at: {}\n", motion));
     if (!session_.diagnostics.all().empty()) {
       if (!loaded_.results.empty()) Print("\n");
@@ -331,7 +290,7 @@ class Run {
       if (!all && proved > 0 && !options_.no_certify)
         Print(fmt::format("certified: {} of {} proofs\n", certified, proved));
     }
-    for (const std::string& path : certificates_)
+    for (const std::string& path : certificates)
       Print(fmt::format("a certificate is in {}: `rondo certify {}`\n", path, path));
     for (const std::string& path : saved_)
       Print(fmt::format("the run is in {}: `rondo replay {}`\n", path, path));
@@ -347,11 +306,8 @@ class Run {
   contracts::LoadedContracts loaded_;
   std::optional<robot::Loose> loose_;
   std::optional<std::pair<expr::Rational, expr::Rational>> between_;
-  std::vector<contracts::Ranges> ranges_;  ///< by contract, if there are any to look at
-  bool wrong_range_ = false;
-  contracts::TubeReuse reuse_;
-  std::vector<std::string> saved_, certificates_;
-  bool unwritten_ = false;
+  std::optional<contracts::DecideAll> decided_;
+  std::vector<std::string> saved_;
   std::vector<std::pair<std::string, std::string>> pictures_;
 };
 

@@ -160,7 +160,8 @@ ExitStatus Run(const Options& options) {
   }
   ExitStatus status = ExitStatus::kEstablished;
   if (!report.unchecked.empty() || report.ended == sim::Ending::kInterrupted) status = ExitStatus::kUndecided;
-  if (fleet.until == "mapped" && report.ended == sim::Ending::kTime) status = ExitStatus::kUndecided;
+  if (fleet.until == sim::Until::kMapped && report.ended == sim::Ending::kTime)
+    status = ExitStatus::kUndecided;
   if (session.diagnostics.has_errors() || !written || (options.fail_on_collision && report.collisions > 0))
     status = ExitStatus::kRejected;
   if (options.json) {

@@ -50,7 +50,7 @@ nlohmann::json ToJson(const Item& item) {
       engines.push_back({{"engine", e.engine}, {"answer", e.answer}, {"seconds", e.seconds}});
     nlohmann::json model = nlohmann::json::object();
     for (const auto& [name, value] : c.model) model[name] = value;
-    answers.push_back({{"answer", c.answer},
+    answers.push_back({{"answer", solve::Name(c.answer)},
                        {"seconds", c.seconds},
                        {"boxes", c.report.icp.boxes},
                        {"cases", c.report.icp.cases},
@@ -85,7 +85,7 @@ ExitStatus StatusOf(const std::vector<Item>& items) {
   for (const Item& item : items) {
     for (const solve::script::CheckOutcome& c : item.outcome.checks) {
       if (c.report.disagreement) return ExitStatus::kBug;
-      if (c.answer != "sat" && c.answer != "unsat") status = ExitStatus::kUndecided;
+      if (!solve::IsDefinite(c.report.answer)) status = ExitStatus::kUndecided;
     }
   }
   return status;

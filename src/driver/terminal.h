@@ -8,6 +8,7 @@
 #include "diag/render.h"
 #include "verdict/verdict.h"
 
+/// Talks to the user: standard output, standard error, progress and interrupts.
 namespace rondo::driver {
 
 /// Writes text to standard output. A reader that went away is not an error.
@@ -17,23 +18,23 @@ void PrintJson(const nlohmann::json& json);
 /// Writes text to standard error, after what is already on its way to standard output.
 void PrintError(const std::string& text);
 
-/// Colours on standard error: if it is a terminal and NO_COLOR is not set.
+/// Returns whether to use colours on standard error: if it is a terminal and NO_COLOR is not set.
 diag::Colour ErrorColour();
 
-/// All diagnostics, sorted, to standard error, and a closing line that counts them.
+/// Writes all diagnostics, sorted, to standard error, and a closing line that counts them.
 void PrintDiagnostics(const diag::SourceSet& sources, const diag::Diagnostics& diagnostics);
 
 /// Writes a picture to a file, as a whole or not at all; says so, unless `quiet`.
 verdict::ExitStatus WritePicture(const std::string& path, const std::string& svg, bool quiet = false);
 
-/// `rondo: message`, for what went wrong outside any source file.
+/// Writes `rondo: message` to standard error, for what went wrong outside any source file.
 void PrintFailure(const std::string& message);
 
-/// `exit 3`, for everything but success.
+/// Writes a line such as `exit 3`, for every status but success.
 void PrintStatus(verdict::ExitStatus status);
 
-/// While it lives, Ctrl-C requests a stop through the token; a second Ctrl-C ends the process at once. One at
-/// a time.
+/// Lets Ctrl-C request a stop through the token while it lives; a second Ctrl-C ends the process at once.
+/// Only one may live at a time.
 class InterruptScope {
  public:
   explicit InterruptScope(const base::StopToken& stop);
@@ -42,13 +43,14 @@ class InterruptScope {
   ~InterruptScope();
 };
 
-/// A line that is overwritten in place; nothing if standard error is no terminal.
+/// Shows a line that is overwritten in place; shows nothing if standard error is no terminal.
 class ProgressLine {
  public:
   ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
   ~ProgressLine() { Clear(); }
+  /// Replaces the line, and `Clear` removes it.
   void Show(const std::string& text);
   void Clear();
 

@@ -6,7 +6,8 @@ namespace CLI {
 class App;
 }  // namespace CLI
 
-/// The verbs of the command line. Each adds itself to the application and leaves its exit status in `status`.
+/// Declares the verbs of the command line. Each function adds its verb to the application; when the verb
+/// runs, it leaves its exit status in `status`.
 namespace rondo::driver {
 
 void AddCheckVerb(CLI::App& app, verdict::ExitStatus& status);

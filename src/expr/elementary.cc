@@ -1,6 +1,7 @@
 #include "expr/elementary.h"
 
 #include <cstdlib>
+#include <iterator>
 
 #include "base/check.h"
 #include "expr/arena.h"
@@ -30,6 +31,22 @@ std::optional<Rational> ExactPower(const Rational& base, const Rational& exponen
 }
 
 }  // namespace
+
+std::optional<Elementary> FindElementary(std::string_view name) {
+  struct Names {
+    std::string_view name, other;
+  };
+  static constexpr Names kNames[] = {
+#define RONDO_ELEMENTARY(kind, name, other, arity, partial) {name, other},
+#include "expr/elementary.def"
+#undef RONDO_ELEMENTARY
+  };
+  for (size_t i = 0; i < std::size(kNames); ++i) {
+    if (!name.empty() && (name == kNames[i].name || name == kNames[i].other))
+      return static_cast<Elementary>(i);
+  }
+  return std::nullopt;
+}
 
 std::optional<Rational> ExactValue(Elementary function, std::span<const Rational> args) {
   const Rational zero(0);

@@ -71,45 +71,21 @@ std::string_view Name(Op op) {
 }
 
 std::string_view Name(Elementary function) {
-  switch (function) {
-    case Elementary::kSqrt:
-      return "sqrt";
-    case Elementary::kAbs:
-      return "abs";
-    case Elementary::kMin:
-      return "min";
-    case Elementary::kMax:
-      return "max";
-    case Elementary::kSin:
-      return "sin";
-    case Elementary::kCos:
-      return "cos";
-    case Elementary::kTan:
-      return "tan";
-    case Elementary::kAsin:
-      return "asin";
-    case Elementary::kAcos:
-      return "acos";
-    case Elementary::kAtan:
-      return "atan";
-    case Elementary::kAtan2:
-      return "atan2";
-    case Elementary::kExp:
-      return "exp";
-    case Elementary::kLog:
-      return "log";
-    case Elementary::kPower:
-      return "power";
-    case Elementary::kCount_:
-      return "";
-  }
-  return "";
+  static constexpr std::string_view kNames[] = {
+#define RONDO_ELEMENTARY(kind, name, other, arity, partial) name,
+#include "expr/elementary.def"
+#undef RONDO_ELEMENTARY
+      ""};
+  return kNames[static_cast<size_t>(function)];
 }
 
 size_t Arity(Elementary function) {
-  const bool binary = function == Elementary::kMin || function == Elementary::kMax ||
-                      function == Elementary::kAtan2 || function == Elementary::kPower;
-  return binary ? 2 : 1;
+  static constexpr size_t kArities[] = {
+#define RONDO_ELEMENTARY(kind, name, other, arity, partial) arity,
+#include "expr/elementary.def"
+#undef RONDO_ELEMENTARY
+      0};
+  return kArities[static_cast<size_t>(function)];
 }
 
 std::string_view Name(Rewrite rewrite) {

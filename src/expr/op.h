@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <string_view>
 
+/// The operators of terms, the elementary functions, and the rewrites that constructors of terms may apply.
 namespace rondo::expr {
 
+/// Names the operators of terms. `payload` is what a term has besides its arguments.
 enum class Op : uint8_t {
   kBool,      // payload 0 or 1
   kNumber,    // payload indexes the arena's numbers; sort Int or Real
@@ -39,31 +41,20 @@ enum class Op : uint8_t {
   kListSet,
 };
 
-/// The functions of reals that have no exact arithmetic. min, max, atan2 and power have two arguments, the
-/// others one. A partial function has no value outside its domain: an atomic formula about it is false there.
+/// Names the functions of reals that have no exact arithmetic (elementary.def is the table of them). A
+/// partial function has no value outside its domain: an atomic formula about it is false there.
 ///
 /// power(x, y) is exp(y log x) for x > 0; 0 for x = 0 < y and 1 for y = 0, whatever x; a product of x's or
 /// its reciprocal where y is an integer. Elsewhere (0 to a negative power, a negative base with an exponent
 /// that is no integer) it is some number, as 1 / 0 is (docs/adr/0017-powers.md).
 enum class Elementary : uint8_t {
-  kSqrt,
-  kAbs,
-  kMin,
-  kMax,
-  kSin,
-  kCos,
-  kTan,
-  kAsin,
-  kAcos,
-  kAtan,
-  kAtan2,
-  kExp,
-  kLog,
-  kPower,
+#define RONDO_ELEMENTARY(kind, name, other, arity, partial) k##kind,
+#include "expr/elementary.def"
+#undef RONDO_ELEMENTARY
   kCount_,
 };
 
-/// Every simplification that a constructor of `Arena` may apply.
+/// Names every simplification that a constructor of `Arena` may apply.
 enum class Rewrite : uint8_t {
   kNotConstant,
   kNotNot,
@@ -105,8 +96,10 @@ enum class Rewrite : uint8_t {
   kCount_,
 };
 
+/// Returns the name as messages and tests show it.
 std::string_view Name(Op op);
 std::string_view Name(Elementary function);
+/// Returns how many arguments the function takes.
 size_t Arity(Elementary function);
 std::string_view Name(Rewrite rewrite);
 

@@ -5,9 +5,11 @@
 #include "diag/source.h"
 #include "lang/syntax_tree.h"
 
+/// Expressions for tools that read JSON.
 namespace rondo::lang {
 
-/// An expression as {"expr": kind, "line", "column", ...}; operands under "args".
+/// Returns an expression as {"expr": kind, "line", "column", ...}, lines and columns from 1; its word or
+/// operator under "text", operands under "args", bound variables under "binders".
 nlohmann::json ExprToJson(const diag::SourceSet& sources, const ExprPool& pool, ExprId expr);
 
 }  // namespace rondo::lang

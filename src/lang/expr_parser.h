@@ -6,47 +6,61 @@
 #include "lang/syntax_tree.h"
 #include "lang/token.h"
 
+/// The grammar of expressions and types that all of Rondo's languages share.
 namespace rondo::lang {
 
-/// A cursor over tokens with the expression and type grammar. Languages derive their parsers from it.
+/// Moves a cursor over tokens and reads expressions and types. Languages derive their parsers from it.
 ///
 /// Binding, from loose to tight: `forall`/`exists`; `implies` (to the right); `or`; `and`; `not`; one
 /// comparison or `in`; `+ -`; `* / %`; unary `-`; `.name`, `[index]`, `(arguments)`. So `not a == b` is `not
 /// (a == b)`.
+///
+/// What is wrong is reported, and stands in the tree as kError. Trees are at most `kDeepest` deep, chains at
+/// most `kLongest` operators long, so that no input exhausts the stack.
 class ExprParser {
  public:
   ExprParser(const TokenStream& stream, ExprPool& pool, diag::Diagnostics& diagnostics)
       : stream_(stream), pool_(pool), diagnostics_(diagnostics) {}
 
+  /// Reads the longest expression that begins here.
   ExprId ParseExpr();
+  /// Reads a type: a name, arguments in angle brackets, dimensions in square brackets.
   TypeSyntax ParseType();
 
  protected:
-  /// A primary expression with members, indices and calls: what can stand left of an assignment.
+  /// Reads a primary expression with members, indices and calls: what can stand left of an assignment.
   ExprId ParsePostfix();
 
-  /// Words that cannot be names of variables in this language.
+  /// Reports whether the word cannot be the name of a variable in this language.
   virtual bool IsReserved(std::string_view word) const = 0;
-  /// Words that may follow a literal number.
+  /// Reports whether the word may follow a literal number as its unit.
   virtual bool IsUnit(std::string_view /*word*/) const { return false; }
-  /// Called where an expression must go on: languages in which lines end here may go on in the next line.
+  /// Is called where an expression must go on: languages in which lines end here may go on in the next line.
   virtual void AllowLineBreak() {}
   virtual ~ExprParser() = default;
 
+  /// Returns the next token, or one behind it, without taking it; kEnd beyond the end.
   const Token& Peek(size_t ahead = 0) const;
+  /// Returns the next token and moves on; stays at kEnd.
   const Token& Take();
-  bool At(std::string_view text) const;  ///< a name or sign with this text
+  bool At(std::string_view text) const;  ///< whether the next token is a name or sign with this text
   bool AtKind(TokenKind kind) const { return Peek().kind == kind; }
+  /// Takes the next token if it has this text; reports nothing if it has not.
   bool Accept(std::string_view text);
-  /// Reports and returns false when the next token is another one. One report for each token at most.
+  /// Takes the next token if it has this text; else reports it and returns false. `after` says for people
+  /// what came before. At most one report for each failure.
   bool Expect(std::string_view text, std::string_view after);
-  /// A name that is not reserved; empty, with a report, if there is none.
+  /// Takes a name that is not reserved and returns it; empty, with a report, if there is none.
   std::string ExpectName(std::string_view what);
+  /// Reports the next token, saying what should stand there.
   diag::Diagnostic& Unexpected(std::string_view expected);
+  /// Returns the place of the token that was taken last.
   diag::Span PreviousSpan() const;
+  /// Reports whether something was reported since the last ClearFailure; further reports are held back till
+  /// then.
   bool failed() const { return failed_; }
   void ClearFailure() { failed_ = false; }
-  /// Reports a chain of operators that would be too deep a tree.
+  /// Reports a chain of operators that would be too deep a tree, and returns whether it is.
   bool TooLong(int operators);
   ExprId Fail(diag::Span span) { return pool_.Add({ExprKind::kError, span, {}, {}, {}}); }
 

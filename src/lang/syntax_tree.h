@@ -10,9 +10,11 @@
 /// The syntax of types and expressions, common to all of Rondo's languages.
 namespace rondo::lang {
 
+/// Names an expression of one ExprPool.
 using ExprId = base::Id<struct ExprTag>;
 
-/// `float`, `pos[N_sys]`, `List<Task>`: a name, arguments, and one entry for each pair of brackets.
+/// Is a type as it is written, such as `float`, `pos[N_sys]`, `List<Task>`: a name, arguments, and one
+/// dimension for each pair of brackets.
 struct TypeSyntax {
   std::string name;
   diag::Span span;
@@ -20,6 +22,7 @@ struct TypeSyntax {
   std::vector<ExprId> dimensions;  ///< an invalid id for `[]` and `[*]`
 };
 
+/// Says what an expression is, and so what `text`, `args` and `binders` hold.
 enum class ExprKind : uint8_t {
   kError,   // reported already
   kInt,     // text
@@ -40,14 +43,16 @@ enum class ExprKind : uint8_t {
   kAny,         // `any text in ...`; args: a list, or the first and the last whole number
 };
 
-/// `i, j in ID`: the domain is a type if `type` has a name, else the expression `domain`.
+/// Is a group of bound variables, `i, j in ID`: their domain is a type if `type` has a name, else the
+/// expression `domain`.
 struct Binder {
   std::vector<std::string> names;
-  std::vector<diag::Span> spans;
+  std::vector<diag::Span> spans;  ///< of the names
   TypeSyntax type;
   ExprId domain;
 };
 
+/// Is one node of a syntax tree; nothing is known of types and names yet.
 struct Expr {
   ExprKind kind = ExprKind::kError;
   diag::Span span;
@@ -56,7 +61,7 @@ struct Expr {
   std::vector<Binder> binders;
 };
 
-/// Owns the expressions of one parse.
+/// Owns the expressions of one parse. An id is valid for as long as its pool.
 class ExprPool {
  public:
   ExprId Add(Expr expr) {

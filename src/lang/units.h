@@ -4,9 +4,10 @@
 
 #include "expr/rational.h"
 
+/// Units and dimensions of quantities in models.
 namespace rondo::lang {
 
-/// Exponents of what is measured. Angles are a dimension of their own.
+/// Says what is measured, by the exponents of length, time and angle. Angles are a dimension of their own.
 struct Dimension {
   int length = 0;
   int time = 0;
@@ -14,20 +15,21 @@ struct Dimension {
   friend bool operator==(const Dimension&, const Dimension&) = default;
 };
 
-/// A unit and its size in SI units (REP-103: metre, second, radian). `deg` has no rational size: it is
-/// pi / 180, and `size` is 1 / 180 with `half_turns` set.
+/// Is a unit and its size in SI units (REP-103: metre, second, radian): numerator / denominator. `deg` has no
+/// rational size: it is pi / 180, and its size is 1 / 180 with `half_turns` set.
 struct Unit {
   std::string_view name;
   Dimension dimension;
   int64_t numerator;
   int64_t denominator;
-  bool half_turns = false;  ///< times pi
+  bool half_turns = false;  ///< whether the size is multiplied by pi
 };
 
-/// nullptr if there is no unit of this name.
+/// Returns the unit of this name (`m`, `cm`, `mm`, `s`, `ms`, `rad`, `deg`); nullptr if there is none.
 const Unit* FindUnit(std::string_view name);
 
-/// `length`, `time`, `angle`, `speed`, `acceleration`, `angular_speed`, `number`; nullptr for other names.
+/// Returns the dimension `length`, `time`, `angle`, `speed`, `acceleration`, `angular_speed` or `number`;
+/// nullptr for other names.
 const Dimension* FindDimension(std::string_view name);
 
 }  // namespace rondo::lang

@@ -1,34 +1,40 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "lang/syntax_tree.h"
 #include "lang/token.h"
 
-/// The syntax of Koord programs and their specifications, as written (Koord paper, Fig. 4, and the superset
-/// of all dialects that docs/language.md describes).
+/// Represents the syntax of Koord programs and their specifications, as written (Koord paper, Fig. 4, and the
+/// superset of all dialects that docs/language.md describes). Ids of expressions that are absent are invalid.
 namespace rondo::koord {
 
 using lang::ExprId;
 
+/// Names the kinds of statements; statements.def lists them.
 enum class StmtKind : uint8_t {
-  kAssign,     // target = value
-  kAddAssign,  // target += value
-  kIncrement,  // target++
-  kCall,       // value
-  kStream,     // target << operands
-  kStop,
-  kBreak,
-  kContinue,
-  kReturn,    // value, or none
-  kIf,        // value: condition; body; orelse
-  kForIn,     // names in value: body
-  kForRange,  // names[0] = value, operands[0]: body
-  kAtomic,    // body
+#define RONDO_STATEMENT(kind, name, word) k##kind,
+#include "koord/syntax/statements.def"
+#undef RONDO_STATEMENT
 };
 
+/// Holds what a kind of statement is called in JSON, and the word that it begins with; empty if there is
+/// none.
+struct StmtWords {
+  std::string_view name, word;
+};
+inline constexpr StmtWords kStmtWords[] = {
+#define RONDO_STATEMENT(kind, name, word) {name, word},
+#include "koord/syntax/statements.def"
+#undef RONDO_STATEMENT
+};
+constexpr const StmtWords& WordsOf(StmtKind kind) { return kStmtWords[static_cast<size_t>(kind)]; }
+
+/// Represents a statement. Which fields are used depends on its kind; an `if` has its condition in `value`,
+/// its branches in `body` and `orelse`.
 struct Stmt {
   StmtKind kind = StmtKind::kStop;
   diag::Span span;  ///< of the first line for statements with a body
@@ -43,6 +49,7 @@ struct Stmt {
   bool elif = false;  ///< an `if` that was written `elif`: the only statement of its parent's `orelse`
 };
 
+/// Represents the declaration of a variable, port, parameter or field.
 struct Decl {
   lang::TypeSyntax type;
   std::string name;
@@ -52,6 +59,7 @@ struct Decl {
   std::vector<std::string> members;  ///< `enum {a, b} name` declares an enumeration in place
 };
 
+/// Represents `def f(...)`: a function with a body, or an external one without.
 struct FunctionDef {
   std::string name;
   diag::Span span;
@@ -60,67 +68,80 @@ struct FunctionDef {
   std::vector<Stmt> body;
   bool has_body = true;
 };
+/// Represents the declaration of a record type.
 struct AdtDef {
   std::string name;
   diag::Span span;
   std::vector<Decl> fields;
 };
+/// Represents the declaration of an enumeration.
 struct EnumDef {
   std::string name;
   diag::Span span;
   std::vector<std::string> members;
   std::vector<diag::Span> member_spans;
 };
+/// Represents the `sensors` or the `actuators` of a module.
 struct PortGroup {
   bool sensors;
   diag::Span span;
   std::vector<Decl> ports;
 };
+/// Represents a module: the ports through which a program reaches a controller.
 struct ModuleDef {
   std::string name;
   diag::Span span;
   std::vector<PortGroup> groups;
 };
+/// Names who may write the variables of a section; see `Section`.
 enum class SectionKind : uint8_t { kAllread, kAllwrite, kLocal };
+/// Represents a section of variables: `allread` (each robot writes its own cell), `allwrite` or `local`.
 struct Section {
   SectionKind kind;
   diag::Span span;
   std::vector<Decl> decls;
 };
+/// Represents an `init` block, which every robot runs once before the first round.
 struct InitDef {
   diag::Span span;
   std::vector<Stmt> body;
 };
+/// Represents an event: its guard and its effect.
 struct EventDef {
   std::string name;
   diag::Span span;
-  ExprId pre;  ///< invalid: always enabled
+  ExprId pre;  ///< the guard; invalid: the event is always enabled
   bool urgent = false;
   std::vector<Stmt> body;
 };
+/// Represents the line that names the program.
 struct AgentHeader {
   std::string name;
   diag::Span span;
 };
 
 // -- specifications
+/// Represents a parameter of the program: a constant, with or without a value.
 struct ParamDef {
   Decl decl;
   diag::Span span;
 };
+/// Names what an assumption is about.
 enum class AssumeKind : uint8_t {
   kFact,       // of parameters and functions, at any time
   kInitially,  // of the initial state, for each robot
   kPort,       // `assume M.name when P always Q`
 };
+/// Represents an assumption of the specification (docs/theory.md, "Assumptions").
 struct AssumeDef {
   AssumeKind kind;
   std::string module;  ///< for kPort
   std::string name;    ///< may be empty
   diag::Span span;
-  ExprId when;  ///< invalid: always
+  ExprId when;  ///< P of a controller assumption; invalid: Q holds always
   ExprId body;
 };
+/// Represents `summary f(x) -> y: F`: F(x, f(x)) holds for all x.
 struct SummaryDef {
   std::string function;
   diag::Span span;
@@ -129,17 +150,20 @@ struct SummaryDef {
   std::string result;
   ExprId body;
 };
+/// Represents an invariant that is to be proved or checked.
 struct InvariantDef {
   std::string name;  ///< may be empty
   diag::Span span;
   ExprId body;
 };
 
+/// Names the forms of an entry of an `explore` section.
 enum class ExploreKind : uint8_t {
   kValue,     // name = body
   kChoice,    // name in body
   kFunction,  // name(parameters) = body
 };
+/// Represents one entry of an `explore` section.
 struct ExploreEntry {
   ExploreKind kind;
   std::string name;  ///< `x`, `M.port`, `N_sys`
@@ -148,30 +172,28 @@ struct ExploreEntry {
   std::vector<diag::Span> parameter_spans;
   ExprId body;
 };
-/// What makes a program executable in finitely many ways: values of parameters, sets that ports and initial
-/// values are taken from, bodies of external functions.
+/// Represents an `explore` section, which makes a program executable in finitely many ways: values of
+/// parameters, sets that ports and initial values are taken from, bodies of external functions.
 struct ExploreDef {
   diag::Span span;
   std::vector<ExploreEntry> entries;
 };
 
-/// platform Motion = Quadrotor from "quadrotor.rondo" every 0.1
-///
-/// What the ports of a module are made of: a robot type with dynamics and a controller, and how long a round
-/// takes.
+/// Represents `platform Motion = Quadrotor from "quadrotor.rondo" every 0.1`: what the ports of a module are
+/// made of, a robot type with dynamics and a controller, and how long a round takes.
 struct PlatformDef {
   std::string module;
   std::string type;
   std::string file;  ///< relative to the file that it stands in
-  diag::Span span;   ///< of the module
+  diag::Span span;   ///< where the module is named
   diag::Span file_span;
-  ExprId period;  ///< seconds
+  ExprId period;  ///< the length of a round, in seconds
 };
 
 using Item = std::variant<AgentHeader, FunctionDef, AdtDef, EnumDef, ModuleDef, Section, InitDef, EventDef,
                           ParamDef, AssumeDef, SummaryDef, InvariantDef, ExploreDef, PlatformDef>;
 
-/// One file, or a program with the specification beside it: items in source order.
+/// Holds one file, or a program with the specification beside it: items in source order.
 struct Program {
   lang::ExprPool exprs;
   std::vector<Item> items;

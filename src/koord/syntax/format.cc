@@ -77,7 +77,8 @@ class Formatter {
       const uint32_t end = sources_->Locate(span.file, span.end).line;
       if (next_comment_ < comments_.size() && comments_[next_comment_].line <= end &&
           (next_comment_ + 1 == comments_.size() || comments_[next_comment_ + 1].line > end)) {
-        text += "  # " + comments_[next_comment_++].text;
+        const std::string& comment = comments_[next_comment_++].text;
+        text += comment.empty() ? "  #" : "  # " + comment;
       } else {
         FlushComments(end + 1);
       }
@@ -243,11 +244,9 @@ class Formatter {
       case StmtKind::kStream:
         return Line(s.span, Text(s.target) + operands());
       case StmtKind::kStop:
-        return Line(s.span, "stop");
       case StmtKind::kBreak:
-        return Line(s.span, "break");
       case StmtKind::kContinue:
-        return Line(s.span, "continue");
+        return Line(s.span, std::string(WordsOf(s.kind).word));
       case StmtKind::kReturn:
         return Line(s.span, s.value.valid() ? "return " + Text(s.value) : "return");
       case StmtKind::kIf:

@@ -145,11 +145,8 @@ class Writer {
     return j;
   }
   json Statement(const Stmt& s) const {
-    constexpr const char* kNames[] = {"assign", "add-assign", "increment", "call",   "stream",
-                                      "stop",   "break",      "continue",  "return", "if",
-                                      "for-in", "for-range",  "atomic"};
     json j = At(s.span);
-    j["statement"] = kNames[static_cast<size_t>(s.kind)];
+    j["statement"] = WordsOf(s.kind).name;
     if (s.target.valid()) j["target"] = Ex(s.target);
     if (s.value.valid())
       j[s.kind == StmtKind::kIf         ? "condition"

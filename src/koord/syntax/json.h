@@ -5,10 +5,11 @@
 #include "diag/source.h"
 #include "koord/syntax/ast.h"
 
+/// Shows Koord programs to other tools.
 namespace rondo::koord {
 
-/// The syntax tree for other tools: {"items": [{"item": "event", "name": ..., "line": ..., "column": ...,
-/// ...}]}. Expressions are objects with "expr" and their parts; every node that a person wrote has a
+/// Returns the syntax tree for other tools: {"items": [{"item": "event", "name": ..., "line": ..., "column":
+/// ..., ...}]}. Expressions are objects with "expr" and their parts; every node that a person wrote has a
 /// position.
 nlohmann::json ToJson(const diag::SourceSet& sources, const Program& program);
 

@@ -3,6 +3,7 @@
 #include "diag/diagnostic.h"
 #include "koord/syntax/ast.h"
 
+/// Reads Koord programs and specifications.
 namespace rondo::koord {
 
 /// Adds the items of `file` to `program`. Reports every syntax error of the file, one for each cause; what
@@ -10,7 +11,7 @@ namespace rondo::koord {
 void Parse(const diag::SourceSet& sources, diag::FileId file, Program& program,
            diag::Diagnostics& diagnostics);
 
-/// Words that cannot name anything.
+/// Reports whether the word is reserved, so that it cannot name anything.
 bool IsReservedWord(std::string_view word);
 
 }  // namespace rondo::koord

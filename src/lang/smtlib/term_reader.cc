@@ -6,6 +6,7 @@
 #include <cctype>
 #include <set>
 
+#include "expr/elementary.h"
 #include "lang/suggest.h"
 
 namespace rondo::lang::smtlib {
@@ -209,8 +210,9 @@ expr::TermId TermReader::Application(const SExpr& e) {
   for (const Family family : {&TermReader::Logic, &TermReader::Arithmetic, &TermReader::Function}) {
     if (const auto result = (this->*family)(e, args)) return *result;
   }
-  std::vector<std::string> names{"and", "or",  "not", "ite",  "distinct", "sqrt", "abs",   "min", "max",
-                                 "sin", "cos", "tan", "asin", "acos",     "atan", "atan2", "exp", "log"};
+  std::vector<std::string> names{"and", "or", "not", "ite", "distinct"};
+  for (size_t f = 0; f < static_cast<size_t>(Elementary::kCount_); ++f)
+    names.emplace_back(Name(static_cast<Elementary>(f)));
   for (const auto& [name, macro] : macros_) names.push_back(name);
   auto& report =
       diagnostics_.Report(Kind::kSmtUnsupported, e.items[0].span, fmt::format("`{}` is no operator", head));
@@ -330,26 +332,19 @@ expr::TermId TermReader::Power(const SExpr& e, TermId base, TermId exponent) {
 
 std::optional<expr::TermId> TermReader::Function(const SExpr& e, const Args& given) {
   const std::string& head = e.items[0].text;
-  static const std::map<std::string, Elementary, std::less<>> kFunctions{
-      {"sqrt", Elementary::kSqrt},   {"abs", Elementary::kAbs},     {"min", Elementary::kMin},
-      {"max", Elementary::kMax},     {"sin", Elementary::kSin},     {"cos", Elementary::kCos},
-      {"tan", Elementary::kTan},     {"asin", Elementary::kAsin},   {"arcsin", Elementary::kAsin},
-      {"acos", Elementary::kAcos},   {"arccos", Elementary::kAcos}, {"atan", Elementary::kAtan},
-      {"arctan", Elementary::kAtan}, {"atan2", Elementary::kAtan2}, {"arctan2", Elementary::kAtan2},
-      {"exp", Elementary::kExp},     {"log", Elementary::kLog},     {"power", Elementary::kPower}};
+  const std::optional<Elementary> function = expr::FindElementary(head);
   const bool hyperbolic = head == "sinh" || head == "cosh" || head == "tanh";
-  const auto it = kFunctions.find(head);
   const bool power = head == "^" || head == "pow";
-  if (it == kFunctions.end() && !hyperbolic && !power && head != "to_real") {
+  if (!function && !hyperbolic && !power && head != "to_real") {
     return std::nullopt;
   }
-  const size_t arity = it != kFunctions.end() ? Arity(it->second) : power ? 2 : 1;
+  const size_t arity = function ? Arity(*function) : power ? 2 : 1;
   Args args = given;
   if (!Count(e, args, arity, arity) || !Unify(e, args)) return TermId{};
   for (TermId& a : args) a = Real(a);
   if (head == "to_real") return args[0];
   if (power) return Power(e, args[0], args[1]);
-  if (it != kFunctions.end()) return arena_.Apply(it->second, args);
+  if (function) return arena_.Apply(*function, args);
   const TermId up = arena_.Apply(Elementary::kExp, {args[0]});
   const TermId down = arena_.Apply(Elementary::kExp, {arena_.Neg(args[0])});
   const TermId half = Number(*Rational::Parse("0.5"));

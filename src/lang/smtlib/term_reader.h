@@ -8,34 +8,42 @@
 #include "expr/arena.h"
 #include "lang/smtlib/sexpr.h"
 
+/// Terms of SMT-LIB scripts and certificates.
 namespace rondo::lang::smtlib {
 
-/// `(define-fun name (parameters) sort body)`: expanded where it is used.
+/// Is a definition, `(define-fun name (parameters) sort body)`: expanded where it is used.
 struct Macro {
   std::vector<std::pair<std::string, expr::SortId>> parameters;
   expr::SortId result;
   SExpr body;
 };
 
-/// Reads terms. An invalid TermId stands for what was reported.
+/// Reads terms into an arena. What is wrong is reported, and an invalid TermId stands for it; reading one
+/// costs no second report.
 class TermReader {
  public:
   TermReader(expr::Arena& arena, diag::Diagnostics& diagnostics) : arena_(arena), diagnostics_(diagnostics) {}
 
+  /// Returns the term that an expression denotes.
   expr::TermId Read(const SExpr& e);
+  /// Returns the term, which has to be a truth value.
   expr::TermId ReadFormula(const SExpr& e);
+  /// Returns the sort that an expression denotes; nothing, with a report, if it is none that is known.
   std::optional<expr::SortId> ReadSort(const SExpr& e);
-  /// Integers become reals where reals are asked for.
+  /// Returns the term as one of this sort: integers become reals where reals are asked for. Reported at `e`
+  /// if it is of another sort.
   expr::TermId As(expr::TermId t, expr::SortId sort, const SExpr& e);
 
-  /// Numbers, constants and operators of the language: they cannot be declared.
+  /// Reports whether the name is a number, constant or operator of the language: these cannot be declared.
   static bool IsReserved(const std::string& name);
+  /// Lets the name stand for the variable from now on, whatever it stood for before.
   void Declare(const SExpr& name, expr::TermId variable);
   /// Forgets every declaration and definition.
   void Forget() {
     variables_.clear();
     macros_.clear();
   }
+  /// Lets the name stand for the definition from now on.
   void Define(const SExpr& name, Macro macro);
 
  private:
@@ -57,7 +65,7 @@ class TermReader {
   bool Count(const SExpr& e, const Args& args, size_t least, size_t most);
   bool IsNumeric(TermId t) const;
   TermId Real(TermId t);
-  /// All real if one is; nothing if one is no number.
+  /// Makes all arguments real if one is. Reports, and returns false, if one is no number.
   bool Unify(const SExpr& e, Args& args);
   TermId Wrong(const SExpr& e, const std::string& message);
   TermId Number(const expr::Rational& value) { return arena_.Number(arena_.Real(), value); }

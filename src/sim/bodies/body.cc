@@ -72,15 +72,37 @@ bool Body::Step(double dt, Integrator integrator) {
   return true;
 }
 
+namespace {
+
+template <typename Model>
+std::unique_ptr<Body> Make() {
+  return std::make_unique<Model>();
+}
+
+/// The bodies that fleets can name: this list is the only one.
+struct BodyModel {
+  std::string_view name;
+  std::unique_ptr<Body> (*make)();
+};
+constexpr BodyModel kModels[] = {{"point_mass", Make<PointMass>},
+                                 {"unicycle", Make<Unicycle>},
+                                 {"car", Make<Car>},
+                                 {"cart", Make<Cart>},
+                                 {"quadrotor", Make<Quadrotor>}};
+
+}  // namespace
+
 std::unique_ptr<Body> MakeBody(std::string_view model) {
-  if (model == "point_mass") return std::make_unique<PointMass>();
-  if (model == "unicycle") return std::make_unique<Unicycle>();
-  if (model == "car") return std::make_unique<Car>();
-  if (model == "cart") return std::make_unique<Cart>();
-  if (model == "quadrotor") return std::make_unique<Quadrotor>();
+  for (const BodyModel& m : kModels) {
+    if (m.name == model) return m.make();
+  }
   return nullptr;
 }
 
-std::vector<std::string> BodyModels() { return {"point_mass", "unicycle", "car", "cart", "quadrotor"}; }
+std::vector<std::string> BodyModels() {
+  std::vector<std::string> names;
+  for (const BodyModel& m : kModels) names.emplace_back(m.name);
+  return names;
+}
 
 }  // namespace rondo::sim

@@ -9,23 +9,25 @@
 
 #include "sim/bodies/integrator.h"
 
+/// Models the bodies of simulated robots.
 namespace rondo::sim {
 
 using Point = std::array<double, 3>;  ///< metres, world frame
 
+/// Returns the distance of two points in metres.
 double Distance(const Point& a, const Point& b);
-/// The angle between -pi and pi that points the same way.
+/// Returns the angle in [-pi, pi) that points the same way; radians.
 double Wrap(double angle);
 
-/// A parameter of a model: its name, default and unit.
+/// Describes a parameter of a model: its name, default and unit.
 struct BodyParameter {
   std::string_view name;
   double value;
   std::string_view unit;
 };
 
-/// A robot's body with its controller: it goes through waypoints, one after the other. The port `target` is a
-/// path of one point.
+/// Models a robot's body with its controller, which goes through waypoints, one after the other. What a
+/// program writes to the port `target` is a path of one point.
 class Body {
  public:
   Body() = default;
@@ -33,41 +35,55 @@ class Body {
   Body& operator=(const Body&) = delete;
   virtual ~Body() = default;
 
-  /// At rest at `position`, heading `yaw`; it holds its position, and has reached it after its dwell time.
-  /// Call after `Set`.
+  /// Puts the body at rest at `position` (metres, world frame), heading `yaw` (radians). It holds its
+  /// position, and has reached it after its dwell time. Reads the parameters, so `Set` has to come before.
   void Place(const Point& position, double yaw);
-  /// A new command: go through these points. Empty: stop here.
+  /// Commands the body to go through these points. Without points it stops where it is.
   void Follow(std::vector<Point> path);
-  /// Time passes: the controller acts, then the body moves, for one period of the controller. False if the
-  /// state is no longer finite.
+  /// Lets one period of the controller pass, `dt` seconds: the controller acts, then the body moves. Returns
+  /// false if the state is no longer finite.
   bool Step(double dt, Integrator integrator);
 
-  /// Did it arrive at the last point of its path, and stay for its dwell time?
+  /// Reports whether it arrived at the last point of its path, within its tolerance, and stayed for its dwell
+  /// time.
   bool reached() const { return reached_; }
   Point position() const { return {state_[0], state_[1], state_[2]}; }
+  /// Returns the heading in radians, from the x axis of the world; 0 for what has none.
   virtual double yaw() const { return 0; }
-  /// Quaternion x, y, z, w.
+  /// Returns how the body is turned in the world, as a quaternion x, y, z, w.
   virtual std::array<double, 4> rotation() const;
+  /// Returns the velocity in m/s, world frame.
   virtual Point velocity() const = 0;
+  /// Reports whether it moves in space; else heights of waypoints do not matter.
   virtual bool flies() const { return false; }
   double radius() const { return Value("radius"); }
   const std::vector<Point>& path() const { return path_; }
 
+  /// Lists the parameters of the model. All models have `radius`, `tolerance`, `waypoint_tolerance` (metres)
+  /// and `dwell` (seconds).
   virtual std::vector<BodyParameter> Parameters() const = 0;
+  /// Gives a parameter a value; it counts from the next `Place` on.
   void Set(const std::string& name, double value) { values_[name] = value; }
+  /// Returns the value of a parameter, its default unless it was set. A name that the model does not list
+  /// ends the program.
   double Value(std::string_view name) const;
 
  protected:
-  /// Reads the parameters.
+  /// Reads the parameters of the model, by `Value`.
   virtual void Prepare() = 0;
+  /// Sets the state for a body at rest, and forgets what the controller remembers.
   virtual void Reset(const Point& position, double yaw) = 0;
-  /// Sets the inputs for the next period. `last`: the point is the end of the path.
+  /// Sets the inputs for the next period of `dt` seconds, towards `target`. `last`: it is the end of the
+  /// path.
   virtual void Control(const Point& target, bool last, double dt) = 0;
+  /// Writes the derivative of the state `x` to `dx`, with the inputs held.
   virtual void Rate(std::span<const double> x, std::span<double> dx) const = 0;
+  /// Repairs the state after a step, such as the length of a quaternion.
   virtual void AfterStep() {}
+  /// Tells the controller that the path is a new one.
   virtual void NewCommand() {}
 
-  std::vector<double> state_;  ///< the first three are the position
+  std::vector<double> state_;  ///< the first three are the position in metres, world frame
 
  private:
   std::map<std::string, double, std::less<>> values_;
@@ -80,8 +96,9 @@ class Body {
   bool reached_ = false;
 };
 
-/// `point_mass`, `unicycle`, `car`, `cart`, `quadrotor`; nullptr for any other name.
+/// Returns a new body of a model (`BodyModels` lists their names); nullptr for any other name.
 std::unique_ptr<Body> MakeBody(std::string_view model);
+/// Returns the names of all models, as fleet files have them.
 std::vector<std::string> BodyModels();
 
 }  // namespace rondo::sim

@@ -2,9 +2,12 @@
 
 #include "sim/bodies/body.h"
 
+/// Declares the bodies that fleets can name, each with its dynamics and controller. Lengths in metres, angles
+/// in radians.
 namespace rondo::sim {
 
-/// A double integrator in space: x'' = a with a limit, under a controller of position and speed.
+/// Models a double integrator in space: x'' = a with a limit on the acceleration, under a controller of
+/// position and speed.
 class PointMass final : public Body {
  public:
   std::vector<BodyParameter> Parameters() const override;
@@ -22,7 +25,7 @@ class PointMass final : public Body {
   double max_speed_ = 0, max_acceleration_ = 0, gain_ = 0, damping_ = 0;
 };
 
-/// A plane robot that turns on the spot: x' = v cos(yaw), y' = v sin(yaw), yaw' = w.
+/// Models a plane robot that turns on the spot: x' = v cos(yaw), y' = v sin(yaw), yaw' = w.
 class Unicycle final : public Body {
  public:
   std::vector<BodyParameter> Parameters() const override;
@@ -40,7 +43,7 @@ class Unicycle final : public Body {
   double max_speed_ = 0, max_turn_ = 0, speed_gain_ = 0, turn_gain_ = 0, near_ = 0;
 };
 
-/// A kinematic bicycle: yaw' = v tan(steer) / wheelbase. It drives backwards to points behind it.
+/// Models a kinematic bicycle: yaw' = v tan(steer) / wheelbase. It drives backwards to points behind it.
 class Car final : public Body {
  public:
   std::vector<BodyParameter> Parameters() const override;
@@ -58,7 +61,7 @@ class Car final : public Body {
   double max_speed_ = 0, max_steer_ = 0, wheelbase_ = 0, speed_gain_ = 0, steer_gain_ = 0, near_ = 0;
 };
 
-/// An omnidirectional cart: any velocity in the plane up to a limit, with a first-order lag.
+/// Models an omnidirectional cart: any velocity in the plane up to a limit, with a first-order lag.
 class Cart final : public Body {
  public:
   std::vector<BodyParameter> Parameters() const override;
@@ -76,7 +79,8 @@ class Cart final : public Body {
   double max_speed_ = 0, gain_ = 0, lag_ = 0;
 };
 
-/// PID(e) = p e + i * integral of e + d * change of e per second.
+/// Computes PID(e) = p e + i * integral of e + d * change of e per second. The integral part stays within
+/// [-limit, limit].
 class Pid {
  public:
   void Gains(double p, double i, double d, double limit = 1e9) {
@@ -85,13 +89,15 @@ class Pid {
     d_ = d;
     limit_ = limit;
   }
+  /// Begins anew: forgets the integral and the last error.
   void Forget() {
     sum_ = 0;
     has_last_ = false;
   }
-  /// The reference jumped: its change is no speed.
+  /// Forgets the last error, for when the reference jumps: that change is no speed.
   void ForgetChange() { has_last_ = false; }
-  /// `frozen`: the integral stays (anti-windup).
+  /// Returns the output for an error that lasts `dt` seconds. `frozen`: the integral stays as it is
+  /// (anti-windup).
   double operator()(double error, double dt, bool frozen = false);
 
  private:
@@ -100,8 +106,8 @@ class Pid {
   bool has_last_ = false;
 };
 
-/// A rigid body with the cascaded controller of hector_quadrotor (position, velocity, attitude). State:
-/// position, velocity (world), quaternion (w, x, y, z), angular velocity (body).
+/// Models a rigid body with the cascaded controller of hector_quadrotor (position, velocity, attitude).
+/// State: position and velocity (world frame), quaternion (w, x, y, z), angular velocity (body frame).
 class Quadrotor final : public Body {
  public:
   std::vector<BodyParameter> Parameters() const override;

@@ -1,4 +1,4 @@
-#include "koord/syntax/parser_impl.h"
+#include "koord/syntax/program_parser.h"
 
 namespace rondo::koord {
 
@@ -167,11 +167,10 @@ bool Parser::ParseSimple(std::vector<Stmt>& out) {
     out.push_back(std::move(stmt));
     return !failed();
   };
-  if (Accept("stop") || (At("exit") && Peek(1).kind == TokenKind::kNewline && Accept("exit"))) {
-    return finish(StmtKind::kStop);
+  for (const StmtKind kind : {StmtKind::kStop, StmtKind::kBreak, StmtKind::kContinue}) {
+    if (Accept(WordsOf(kind).word)) return finish(kind);
   }
-  if (Accept("break")) return finish(StmtKind::kBreak);
-  if (Accept("continue")) return finish(StmtKind::kContinue);
+  if (At("exit") && Peek(1).kind == TokenKind::kNewline && Accept("exit")) return finish(StmtKind::kStop);
   if (Accept("return")) {
     if (!AtKind(TokenKind::kNewline) && !AtKind(TokenKind::kEnd) && !At(";")) stmt.value = ParseExpr();
     return finish(StmtKind::kReturn);

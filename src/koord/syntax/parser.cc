@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <array>
+#include <iterator>
 
-#include "koord/syntax/parser_impl.h"
+#include "koord/syntax/program_parser.h"
 #include "lang/lexer.h"
 
 namespace rondo::koord {
@@ -11,12 +11,14 @@ using diag::Span;
 using lang::TokenKind;
 
 bool IsReservedWord(std::string_view word) {
-  static constexpr std::array<std::string_view, 31> kWords = {
-      "using",  "def",     "actuators", "sensors", "allread", "allwrite", "local", "init",
-      "pre",    "eff",     "if",        "elif",    "else",    "for",      "in",    "atomic",
-      "return", "break",   "stop",      "and",     "or",      "not",      "pid",   "forall",
-      "exists", "implies", "continue",  "true",    "false",   "True",     "False"};
-  return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
+  // Besides those that statements begin with.
+  static constexpr std::string_view kWords[] = {
+      "using", "def",    "actuators", "sensors", "allread", "allwrite", "local", "init",
+      "pre",   "eff",    "elif",      "else",    "in",      "and",      "or",    "not",
+      "pid",   "forall", "exists",    "implies", "true",    "false",    "True",  "False"};
+  const auto begins = [&](const StmtWords& statement) { return statement.word == word; };
+  return std::ranges::find(kWords, word) != std::end(kWords) ||
+         (!word.empty() && std::ranges::any_of(kStmtWords, begins));
 }
 
 void Parse(const diag::SourceSet& sources, diag::FileId file, Program& program,

@@ -1,4 +1,4 @@
-#include "koord/syntax/parser_impl.h"
+#include "koord/syntax/program_parser.h"
 
 namespace rondo::koord {
 

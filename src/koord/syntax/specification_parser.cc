@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "koord/syntax/parser_impl.h"
+#include "koord/syntax/program_parser.h"
 
 namespace rondo::koord {
 

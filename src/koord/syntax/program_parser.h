@@ -4,9 +4,10 @@
 #include "koord/syntax/parser.h"
 #include "lang/expr_parser.h"
 
+/// Declares the parser behind `Parse`; only its own sources include it.
 namespace rondo::koord {
 
-/// The recursive-descent parser. Its grammar is split over files by what it reads: items, declarations,
+/// Parses Koord by recursive descent. Its grammar is split over files by what it reads: items, declarations,
 /// statements, specifications.
 class Parser : public lang::ExprParser {
  public:
@@ -22,7 +23,7 @@ class Parser : public lang::ExprParser {
   }
 
  private:
-  // items.cc
+  // parser.cc
   void ParseItem();
   void ParseDef();
   void ParseFunction(std::string name, diag::Span span);
@@ -34,12 +35,12 @@ class Parser : public lang::ExprParser {
   void ParseEvent();
   bool ParseEventBody(EventDef& event);
 
-  // declarations.cc
+  // declaration_parser.cc
   void ParseDeclGroup(std::vector<Decl>& decls);
   bool ParseDecl(std::vector<Decl>& decls);
   void ParseDimensions(std::vector<ExprId>& dimensions);
 
-  // statements.cc
+  // statement_parser.cc
   std::vector<Stmt> ParseSuite(std::string_view after);
   std::vector<Stmt> ParseBlock();
   void ParseStatement(std::vector<Stmt>& out);
@@ -48,7 +49,7 @@ class Parser : public lang::ExprParser {
   void ParseFor(std::vector<Stmt>& out);
   bool AtCompound() const;
 
-  // specifications.cc
+  // specification_parser.cc
   bool ParseSpecItem();
   void ParseParam(diag::Span start);
   void ParseAssume(diag::Span start);
