@@ -16,6 +16,7 @@ class CheckFailure {
   CheckFailure& operator=(const CheckFailure&) = delete;
   [[noreturn]] ~CheckFailure();
 
+  /// Appends a value to the message, as a stream prints it.
   template <typename T>
   CheckFailure& operator<<(const T& value) {
     text_ << value;
@@ -35,6 +36,8 @@ struct CheckVoid {
 
 // Not in parentheses: the message is streamed into its end.
 // NOLINTBEGIN(bugprone-macro-parentheses)
+/// Does nothing if `condition` holds; else prints the condition, its place and what is streamed in, and
+/// aborts. Not in parentheses: the message is streamed into its end.
 #define CHECK(condition)             \
   (condition) ? static_cast<void>(0) \
               : ::rondo::base::CheckVoid() & ::rondo::base::CheckFailure(#condition, __FILE__, __LINE__)

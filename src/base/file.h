@@ -6,13 +6,16 @@
 
 #include "base/result.h"
 
+/// Files are read and written as a whole: what goes wrong is a `Result`, never an exception.
 namespace rondo::base {
 
-/// The bytes of a regular file. @error when it cannot be read, is a folder, or is larger than 64 MiB.
+/// Returns the bytes of a regular file. @error when it cannot be read, is a folder, or is larger than 64 MiB.
 Result<std::string> ReadFile(const std::filesystem::path& path);
 
 /// Writes all of `text` or nothing: a temporary file beside `path` is renamed over it. Creates missing
 /// folders.
+///
+/// @error when the file or a folder cannot be written; a file that was there before is then unchanged.
 Result<bool> WriteFileAtomically(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace rondo::base

@@ -4,10 +4,11 @@
 #include <cstdint>
 #include <functional>
 
+/// Indices into arenas, with a type for each arena.
 namespace rondo::base {
 
-/// An index into one arena, typed by `Tag` so that ids of different arenas cannot be mixed up. Default: no
-/// object.
+/// Names an object of one arena by its index. `Tag` makes ids of different arenas different types, so that
+/// they cannot be mixed up. A default-constructed id names no object.
 template <typename Tag>
 struct Id {
   static constexpr uint32_t kNone = 0xffffffffu;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 
+/// The one way in which independent pieces of work share the cores of the machine.
 namespace rondo::base {
 
 /// Runs `work(i)` for each i in [0, count) on at most `jobs` threads (0: as many as the machine has cores)

@@ -6,14 +6,17 @@
 
 #include "base/check.h"
 
+/// Values that may be missing because the world failed: the one channel for errors of files and processes.
 namespace rondo::base {
 
-/// Why the world failed us: a file, a process, a time-out. Not for wrong input (diagnostics) or bugs (CHECK).
+/// Says why the world failed us: a file, a process, a time-out. Wrong input is a diagnostic instead, and a
+/// bug of ours a CHECK.
 struct Error {
   std::string message;
 };
 
-/// A value, or the error that prevented it. Must be looked at.
+/// Holds a value, or the error that prevented it. Has to be looked at: ignoring one is a compiler warning.
+/// `value()` stops the program if there is none.
 template <typename T>
 class [[nodiscard]] Result {
  public:

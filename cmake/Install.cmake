@@ -1,0 +1,16 @@
+# `cmake --install`: the program, models, examples and documents, and a package that finds them.
+#
+#   find_package(rondo REQUIRED)     # rondo::rondo is the program; rondo_MODELS and rondo_EXAMPLES are folders
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(data ${CMAKE_INSTALL_DATADIR}/rondo)
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/rondo)
+install(TARGETS rondo EXPORT rondo-targets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY models examples DESTINATION ${data})
+install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.svg")
+install(EXPORT rondo-targets NAMESPACE rondo:: DESTINATION ${package})
+configure_package_config_file(cmake/rondoConfig.cmake.in ${CMAKE_BINARY_DIR}/rondoConfig.cmake INSTALL_DESTINATION ${package}
+  PATH_VARS data)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/rondoConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/rondoConfig.cmake ${CMAKE_BINARY_DIR}/rondoConfigVersion.cmake DESTINATION ${package})
