@@ -332,12 +332,12 @@ TEST(ExploreAgreement, WhatIsProvedIsNeverViolated) {
       ++violated;
       const auto property = static_cast<size_t>(found.search.broken.property);
       ASSERT_LT(property, report.rows.size());  // the last row is that operations are defined
-      EXPECT_NE(report.rows[property].verdict, Verdict::kProved)
+      EXPECT_NE(report.rows[property].verdict, verdict::Verdict::kProved)
           << "seed " << seed << ", N = " << n << ", " << report.rows[property].name << "\n"
           << text;
       break;
     }
-    for (const Row& row : report.rows) proved += row.verdict == Verdict::kProved ? 1 : 0;
+    for (const Row& row : report.rows) proved += row.verdict == verdict::Verdict::kProved ? 1 : 0;
   }
   EXPECT_GT(proved, 20U);
   EXPECT_GT(violated, 6U);

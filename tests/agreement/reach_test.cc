@@ -28,7 +28,7 @@ bool IsLong(const std::string& contract) {
 
 struct Loaded {
   workspace::Session session;
-  std::unique_ptr<driver::Motion> motion;
+  std::unique_ptr<workspace::LoadedModule> motion;
   std::vector<contracts::ContractResult> contracts;
 };
 

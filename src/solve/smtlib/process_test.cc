@@ -33,5 +33,11 @@ TEST(RunProcess, ACancelledTokenKillsTheChild) {
   EXPECT_TRUE(output.value().timed_out);
 }
 
+TEST(RunProcess, AChildThatClosesItsOutputIsKilledWhenTimeIsOver) {
+  const auto output = RunProcess({"sh", "-c", "exec >&-; sleep 1000"}, "", std::chrono::milliseconds(50), {});
+  ASSERT_TRUE(output.ok());
+  EXPECT_TRUE(output.value().timed_out);
+}
+
 }  // namespace
 }  // namespace rondo::solve::smtlib

@@ -1,0 +1,204 @@
+#include "sim/fleet/fleet.h"
+
+#include <gtest/gtest.h>
+
+namespace rondo::sim {
+namespace {
+
+const std::string kRobot = "[[robot]]\nmodel = \"car\"\nposition = [0, 0, 0]\n";
+
+struct Reading {
+  explicit Reading(const std::string& text) {
+    fleet = ReadFleet(sources, sources.Add("f.toml", text), diagnostics);
+  }
+  // `text under the span: message` of the only diagnostic.
+  std::string Mistake() const {
+    EXPECT_EQ(diagnostics.all().size(), 1U);
+    if (diagnostics.all().empty()) return "";
+    const diag::Diagnostic& d = diagnostics.all()[0];
+    EXPECT_EQ(d.severity, diag::Severity::kError);
+    return std::string(sources.Text(d.span)) + ": " + d.message;
+  }
+
+  diag::SourceSet sources;
+  diag::Diagnostics diagnostics;
+  Fleet fleet;
+};
+
+// The mistake in a file that has a robot besides.
+std::string MistakeIn(const std::string& text) { return Reading(text + "\n" + kRobot).Mistake(); }
+
+TEST(Fleet, HasDefaults) {
+  const Reading reading(kRobot);
+  EXPECT_TRUE(reading.diagnostics.all().empty());
+  EXPECT_EQ(reading.fleet.delta, 0.1);
+  EXPECT_EQ(reading.fleet.duration, 60);
+  EXPECT_EQ(reading.fleet.policy, Policy::kFirst);
+  EXPECT_EQ(reading.fleet.integrator, Integrator::kRungeKutta4);
+  EXPECT_FALSE(reading.fleet.seed.has_value());
+  EXPECT_EQ(reading.fleet.world.high, (Point{50, 50, 20}));
+  ASSERT_EQ(reading.fleet.robots.size(), 1U);
+  EXPECT_EQ(reading.fleet.robots[0].name, "robot0");
+}
+
+TEST(Fleet, ReadsEverySection) {
+  const Reading reading(
+      "[run]\ndelta = 0.5\nduration = 3\nskip = 0.25\nseed = 9\npolicy = \"round_robin\"\nintegrator = \"adaptive\"\n"
+      "until = \"mapped\"\n[world]\nlow = [-1, -2, 0]\nhigh = [1, 2, 3]\n"
+      "[[world.cylinder]]\ncentre = [0, 1, 0]\nradius = 0.25\nheight = 4\n"
+      "[lidar]\nbeams = 12\nnoise = 0.5\n[map]\ncell = 2\n[planner]\npath_clearance = 1.5\n" +
+      kRobot);
+  EXPECT_TRUE(reading.diagnostics.all().empty());
+  const Fleet& fleet = reading.fleet;
+  EXPECT_EQ(fleet.delta, 0.5);
+  EXPECT_EQ(fleet.skip, 0.25);
+  EXPECT_EQ(fleet.seed, 9U);
+  EXPECT_EQ(fleet.policy, Policy::kRoundRobin);
+  EXPECT_EQ(fleet.integrator, Integrator::kAdaptive);
+  EXPECT_EQ(fleet.until, Until::kMapped);
+  EXPECT_EQ(fleet.world.low, (Point{-1, -2, 0}));
+  ASSERT_EQ(fleet.world.cylinders.size(), 1U);
+  EXPECT_EQ(fleet.world.cylinders[0].radius, 0.25);
+  EXPECT_EQ(fleet.lidar.beams, 12);
+  EXPECT_EQ(fleet.lidar.noise, 0.5);
+  EXPECT_EQ(fleet.cell, 2);
+  EXPECT_EQ(fleet.path_clearance, 1.5);
+}
+
+TEST(Fleet, ManyRobotsStandInRows) {
+  const Reading reading(kRobot +
+                        "name = \"r\"\ncount = 5\ncolumns = 2\nstep = [2, 0, 0]\nrow_step = [0, 3, 1]\n");
+  ASSERT_EQ(reading.fleet.robots.size(), 5U);
+  EXPECT_EQ(reading.fleet.robots[1].name, "r1");
+  EXPECT_EQ(reading.fleet.robots[1].position, (Point{2, 0, 0}));
+  EXPECT_EQ(reading.fleet.robots[4].position, (Point{0, 6, 2}));
+}
+
+TEST(Fleet, ParametersOfAModelAreNumbers) {
+  const Reading reading(kRobot + "parameters = { wheelbase = 0.5 }\nyaw = 1.5\n");
+  EXPECT_EQ(reading.fleet.robots[0].parameters.at("wheelbase"), 0.5);
+  EXPECT_EQ(reading.fleet.robots[0].yaw, 1.5);
+}
+
+TEST(Fleet, ValuesOfTheProgramKeepTheirTypes) {
+  const Reading reading("[params]\na = 1\nb = 1.0\nc = true\nd = \"text\"\n[initial]\nl = [{ id = 1 }]\n" +
+                        kRobot);
+  const auto& params = reading.fleet.params;
+  EXPECT_TRUE(params.at("a").value.is_number_integer());
+  EXPECT_TRUE(params.at("b").value.is_number_float());
+  EXPECT_TRUE(params.at("c").value.is_boolean());
+  EXPECT_EQ(params.at("d").value, "text");
+  EXPECT_EQ(reading.fleet.initial.at("l").value, nlohmann::json::array({{{"id", 1}}}));
+  EXPECT_EQ(reading.sources.Text(params.at("a").span), "1");
+}
+
+TEST(Fleet, WhatIsNoTomlIsASyntaxError) {
+  const Reading reading("[run\ndelta = 1\n");
+  ASSERT_EQ(reading.diagnostics.all().size(), 1U);
+  EXPECT_EQ(reading.diagnostics.all()[0].kind, diag::Kind::kFleetSyntax);
+  EXPECT_EQ(
+      reading.sources.Locate(reading.diagnostics.all()[0].span.file, reading.diagnostics.all()[0].span.begin)
+          .line,
+      1U);
+}
+
+TEST(Fleet, AnUnknownKeyIsAMistake) {
+  EXPECT_EQ(MistakeIn("[run]\ndelta = 1\nduraton = 3"), "duraton = 3: `run` has no `duraton`");
+  EXPECT_EQ(MistakeIn("[worlds]"), "worlds]: a fleet file has no `worlds`");
+}
+
+TEST(Fleet, AnUnknownKeyThatIsNearlyRightHasAHint) {
+  const Reading reading("[run]\nduraton = 3\n" + kRobot);
+  ASSERT_EQ(reading.diagnostics.all().size(), 1U);
+  EXPECT_EQ(reading.diagnostics.all()[0].helps, std::vector<std::string>{"did you mean `duration`?"});
+}
+
+TEST(Fleet, ANumberMustBeOne) {
+  EXPECT_EQ(MistakeIn("[run]\ndelta = \"long\""), "\"long\": `delta` must be a number");
+  EXPECT_EQ(MistakeIn("[run]\ndelta = true"), "true: `delta` must be a number");
+  EXPECT_EQ(MistakeIn("[run]\ndelta = inf"), "inf: `delta` must be a number");
+}
+
+TEST(Fleet, ANumberMustLieInItsRange) {
+  EXPECT_EQ(MistakeIn("[run]\nskip = 1.5"), "1.5: `skip` must lie between 0 and 1");
+  EXPECT_EQ(MistakeIn("[run]\nskip = -0.5"), "-0.5: `skip` must lie between 0 and 1");
+  EXPECT_EQ(Reading("[run]\nskip = 1\n" + kRobot).fleet.skip, 1);
+}
+
+TEST(Fleet, AMistakeLeavesTheDefault) { EXPECT_EQ(Reading("[run]\ndelta = -1\n" + kRobot).fleet.delta, 0.1); }
+
+TEST(Fleet, ANumberThatADoubleCannotHoldIsAMistake) {
+  EXPECT_EQ(MistakeIn("[run]\ndelta = 1e-400"), "1e-400: this number is too large or too small to be read");
+}
+
+TEST(Fleet, AWordMustBeOneOfTheChoices) {
+  EXPECT_EQ(MistakeIn("[run]\npolicy = \"last\""), "\"last\": `policy` cannot be this");
+  EXPECT_EQ(MistakeIn("[run]\nuntil = 3"), "3: `until` cannot be this");
+}
+
+TEST(Fleet, ASectionMustBeATable) {
+  EXPECT_EQ(MistakeIn("run = 3"), "3: `run` must be a table: `[run]`");
+  EXPECT_EQ(Reading("robot = 3\n[[world.box]]\ncentre = [0, 0, 0]\nsize = [1, 1, 1]\n").Mistake(),
+            "3: write `[[robot]]` for each");
+}
+
+TEST(Fleet, APointHasThreeNumbers) {
+  EXPECT_EQ(Reading("[world]\nlow = 3\n" + kRobot).Mistake(), "3: `low` must be three numbers: `[x, y, z]`");
+  const Reading two("[world]\nlow = [0, 0]\n" + kRobot);
+  ASSERT_EQ(two.diagnostics.all().size(), 1U);
+  EXPECT_EQ(two.diagnostics.all()[0].message, "`low` must be three numbers: `[x, y, z]`");
+  EXPECT_EQ(MistakeIn("[world]\nlow = [0, 2000000, 0]"), "2000000: `low` needs numbers below a million");
+}
+
+TEST(Fleet, TheWorldIsNotUpsideDown) {
+  const Reading reading("[world]\nlow = [0, 0, 5]\nhigh = [1, 1, 4]\n" + kRobot);
+  ASSERT_EQ(reading.diagnostics.all().size(), 1U);
+  EXPECT_EQ(reading.diagnostics.all()[0].message, "`high` must not be below `low`");
+}
+
+TEST(Fleet, ABoxHasASize) {
+  const Reading reading("[[world.box]]\ncentre = [0, 0, 0]\nsize = [1, 0, 1]\n" + kRobot);
+  ASSERT_EQ(reading.diagnostics.all().size(), 1U);
+  EXPECT_EQ(reading.diagnostics.all()[0].message, "a box needs a positive size in every direction");
+}
+
+TEST(Fleet, ARobotHasAModel) {
+  EXPECT_EQ(Reading("[[robot]]\nmodel = \"quadroto\"\nposition = [0, 0, 0]\n").Mistake(),
+            "\"quadroto\": there is no model `quadroto`");
+  const Reading none("[[robot]]\nposition = [0, 0, 0]\n");
+  ASSERT_EQ(none.diagnostics.all().size(), 1U);
+  EXPECT_EQ(none.diagnostics.all()[0].message, "the robot has no `model`");
+}
+
+TEST(Fleet, ARobotHasAPosition) {
+  const Reading reading("[[robot]]\nmodel = \"car\"\n");
+  ASSERT_EQ(reading.diagnostics.all().size(), 1U);
+  EXPECT_EQ(reading.diagnostics.all()[0].message, "`position` is missing");
+}
+
+TEST(Fleet, OnlyParametersOfTheModelCanBeSet) {
+  EXPECT_EQ(Reading(kRobot + "parameters = { mass = 1 }\n").Mistake().substr(0, 4), "mass");
+  EXPECT_EQ(Reading(kRobot + "parameters = { radius = 0 }\n").diagnostics.all().size(), 1U);
+  EXPECT_TRUE(Reading(kRobot + "parameters = { dwell = 0 }\n").diagnostics.all().empty());
+}
+
+TEST(Fleet, NamesAreWordsAndDiffer) {
+  EXPECT_EQ(Reading(kRobot + "name = \"a b\"\n").Mistake(), "\"a b\": a name has letters, digits and `_`");
+  const Reading twice(kRobot + "name = \"a\"\n" + kRobot + "name = \"a\"\n");
+  ASSERT_EQ(twice.diagnostics.all().size(), 1U);
+  EXPECT_EQ(twice.diagnostics.all()[0].message, "there are two robots `a`");
+}
+
+TEST(Fleet, ACountIsWhole) {
+  EXPECT_EQ(Reading(kRobot + "count = 1.5\n").Mistake(), "1.5: `count` must be a whole number");
+  EXPECT_EQ(Reading(kRobot + "count = 0\n").Mistake(), "0: `count` must lie between 1 and 100000");
+}
+
+TEST(Fleet, WithoutARobotThereIsNothingToSimulate) {
+  const Reading reading("[run]\ndelta = 1\n");
+  ASSERT_EQ(reading.diagnostics.all().size(), 1U);
+  EXPECT_EQ(reading.diagnostics.all()[0].message, "the fleet has no robot");
+}
+
+}  // namespace
+}  // namespace rondo::sim

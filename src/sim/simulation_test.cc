@@ -1,0 +1,168 @@
+#include "sim/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include "koord/check/check.h"
+#include "koord/syntax/parser.h"
+
+namespace rondo::sim {
+namespace {
+
+const char* const kGo =
+    "using Motion:\n    sensors:\n        pos psn\n        bool reached\n    actuators:\n        pos target\n"
+    "Go:\n    pre: Motion.psn.x < 1\n    eff:\n        Motion.target = pos(2, 0, 0)\n";
+
+// Point masses two metres apart, in a row along y.
+Fleet Masses(size_t count, double duration = 1) {
+  Fleet fleet;
+  fleet.duration = duration;
+  for (size_t r = 0; r < count; ++r)
+    fleet.robots.push_back(
+        {"r" + std::to_string(r), "point_mass", {0, 2.0 * static_cast<double>(r), 0}, 0, {}, {}});
+  return fleet;
+}
+
+struct Outcome {
+  SimulationReport report;
+  std::vector<std::string> messages;
+};
+
+Outcome Play(const std::string& text, const Fleet& fleet, SimulationOptions options = {}) {
+  diag::SourceSet sources;
+  diag::Diagnostics diagnostics;
+  koord::Program program;
+  koord::Parse(sources, sources.Add("test.koord", text), program, diagnostics);
+  const koord::Model model = koord::Check(program, diagnostics);
+  EXPECT_FALSE(diagnostics.has_errors()) << text;
+  Outcome outcome;
+  outcome.report = Simulate(model, fleet, options, nullptr, diagnostics);
+  for (const diag::Diagnostic& d : diagnostics.all()) {
+    if (d.severity == diag::Severity::kError) outcome.messages.push_back(d.message);
+  }
+  return outcome;
+}
+
+std::string Local(const std::string& body) {
+  return "local:\n    int n = 0\n    stream out\nGo:\n    eff:\n" + body;
+}
+
+TEST(Simulation, LastsAsManyRoundsAsItsTimeHas) {
+  const Outcome outcome = Play(kGo, Masses(1, 0.95));
+  EXPECT_TRUE(outcome.report.ran);
+  EXPECT_EQ(outcome.report.rounds, 10U);
+  EXPECT_EQ(outcome.report.ended, Ending::kTime);
+  EXPECT_NEAR(outcome.report.time, 1, 1e-9);
+}
+
+TEST(Simulation, ADurationThatIsAskedForGoesFirst) {
+  SimulationOptions options;
+  options.duration = 0.3;
+  EXPECT_EQ(Play(kGo, Masses(1), options).report.rounds, 3U);
+}
+
+TEST(Simulation, EndsWhenEveryRobotHasStopped) {
+  const Outcome outcome =
+      Play(Local("        n = n + 1\n        if n == 3 + pid:\n            stop\n"), Masses(2));
+  EXPECT_EQ(outcome.report.ended, Ending::kStopped);
+  EXPECT_EQ(outcome.report.rounds, 4U);
+  EXPECT_EQ(outcome.report.events, 7U);
+}
+
+TEST(Simulation, AnOperationWithoutAResultEndsIt) {
+  const Outcome outcome = Play(Local("        n = 1 / n\n"), Masses(1));
+  EXPECT_EQ(outcome.report.ended, Ending::kFailed);
+  EXPECT_EQ(outcome.messages, std::vector<std::string>{"robot 0 fails at t = 0 s: the divisor is zero"});
+}
+
+TEST(Simulation, BodiesGoWhereTheProgramSays) {
+  const Outcome outcome =
+      Play(std::string(kGo) + "invariant behind: forall i in ID: Motion[i].psn.x < 1.5\n", Masses(1, 20));
+  ASSERT_EQ(outcome.report.violations.size(), 1U);
+  EXPECT_EQ(outcome.report.violations[0].what, "invariant `behind`");
+  EXPECT_GT(outcome.report.violations[0].first, 0);
+}
+
+TEST(Simulation, ARobotHoldsItsPositionUntilItIsTold) {
+  const Outcome outcome =
+      Play(std::string(kGo) + "assume initially: Motion.target == Motion.psn\n", Masses(2, 0.1));
+  EXPECT_TRUE(outcome.report.violations.empty());
+}
+
+TEST(Simulation, RobotsThatMeetCollideOnce) {
+  const Outcome outcome = Play(kGo, Masses(2, 20));
+  EXPECT_EQ(outcome.report.collisions, 1U);
+  EXPECT_EQ(outcome.report.first_pair, "r0 and r1");
+  EXPECT_LE(outcome.report.least_between_robots, 0);
+}
+
+TEST(Simulation, StreamsAreLogged) {
+  EXPECT_EQ(Play(Local("        out << n\n        stop\n"), Masses(1)).report.log,
+            std::vector<std::string>{"[0 s] r0: 0"});
+}
+
+TEST(Simulation, RobotsTakeTurnsWithRoundRobin) {
+  // Of the first round robot 1 is the last writer; of the second, only if nobody takes turns.
+  const std::string text =
+      "allwrite:\n    int s = 0\nGo:\n    eff:\n        s = 10 * s + pid + 1\n"
+      "invariant first: s != 22\ninvariant turns: s != 21\n";
+  Fleet fleet = Masses(2, 0.2);
+  const Outcome first = Play(text, fleet);
+  ASSERT_EQ(first.report.violations.size(), 1U);
+  EXPECT_EQ(first.report.violations[0].what, "invariant `first`");
+  fleet.policy = Policy::kRoundRobin;
+  const Outcome turns = Play(text, fleet);
+  ASSERT_EQ(turns.report.violations.size(), 1U);
+  EXPECT_EQ(turns.report.violations[0].what, "invariant `turns`");
+}
+
+TEST(Simulation, TheFleetGivesValues) {
+  Fleet fleet = Masses(1, 0.1);
+  fleet.params["k"] = {4, {}};
+  fleet.initial["m"] = {5, {}};
+  const std::string text =
+      "param int k\nlocal:\n    int m\n    int n = 0\nGo:\n    eff:\n        n = k + m\n"
+      "invariant sum: forall i in ID: n[i] != 9\n";
+  EXPECT_EQ(Play(text, fleet).report.violations.size(), 1U);
+}
+
+TEST(Simulation, ValuesOfTheFleetMustFitTheProgram) {
+  Fleet fleet = Masses(1);
+  fleet.params["a"] = {1, {}};
+  EXPECT_EQ(Play(Local("        n = 1\n"), fleet).messages,
+            std::vector<std::string>{"the program has no parameter `a`"});
+  fleet.params.clear();
+  fleet.initial["n"] = {true, {}};
+  EXPECT_EQ(Play(Local("        n = 1\n"), fleet).messages, std::vector<std::string>{"`n` must be a `int`"});
+}
+
+TEST(Simulation, TheSameSeedGivesTheSameRun) {
+  Fleet fleet = Masses(2, 2);
+  fleet.skip = 0.5;
+  SimulationOptions options;
+  options.seed = 5;
+  const std::string text = Local("        n = any int in 1..9\n        out << n\n");
+  const Outcome first = Play(text, fleet, options);
+  EXPECT_EQ(Play(text, fleet, options).report.log, first.report.log);
+  options.seed = 6;
+  EXPECT_NE(Play(text, fleet, options).report.log, first.report.log);
+}
+
+TEST(Simulation, SkippingIsAProbabilityAndNotForUrgentEvents) {
+  Fleet fleet = Masses(1, 1);
+  fleet.skip = 1;
+  EXPECT_EQ(
+      Play("local:\n    int n = 0\nGo:\n    pre: n >= 0\n    eff:\n        n = n + 1\n", fleet).report.events,
+      0U);
+  EXPECT_EQ(Play("local:\n    int n = 0\nGo:\n    pre urgent: n >= 0\n    eff:\n        n = n + 1\n", fleet)
+                .report.events,
+            10U);
+}
+
+TEST(Simulation, EndingsHaveNames) {
+  EXPECT_EQ(Name(Ending::kTime), "time");
+  EXPECT_EQ(Name(Ending::kInterrupted), "interrupted");
+  EXPECT_EQ(Name(Ending::kFailed), "failed");
+}
+
+}  // namespace
+}  // namespace rondo::sim
