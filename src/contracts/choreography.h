@@ -13,18 +13,20 @@
 #include "verdict/basis.h"
 #include "workspace/module_files.h"
 
+/// Proves choreographies with everything that goes with it: regions, obligations, certificates.
 namespace rondo::contracts {
 
-/// A choreography and what was found about it.
+/// Holds a choreography and what was found about it.
 struct ChoreographyProof {
   const choreo::Graph* graph = nullptr;
   choreo::Inference regions;
   choreo::Obligations obligations;
   choreo::Proofs proofs;
-  std::set<std::string> discharged;  ///< motions whose contracts are proved (`rondo reach`)
+  std::set<std::string> discharged;  ///< motions (`Type.Motion`) whose contracts are proved by `rondo reach`
   bool interrupted = false;
 };
 
+/// Says how a choreography is proved.
 struct ChoreographyOptions {
   double timeout = 10;  ///< seconds for each obligation, and for the regions of each fork
   unsigned jobs = 0;    ///< threads; 0: one for each core
@@ -53,7 +55,8 @@ ChoreographyProof ProveChoreography(choreo::Graph& graph, expr::Arena& arena,
                                     std::set<std::string> discharged, const ChoreographyOptions& options,
                                     diag::Diagnostics& diagnostics);
 
-/// How many obligations that have to hold are proved, refuted, open, and the time that they took.
+/// Counts how many obligations that have to hold are proved, refuted and open, and adds up the seconds that
+/// they took.
 struct Counts {
   size_t holds = 0, fails = 0, open = 0;
   double seconds = 0;
@@ -61,6 +64,7 @@ struct Counts {
   void Add(const choreo::Proof& proof);
   size_t All() const { return holds + fails + open; }
 };
+/// Returns the counts of all obligations of a choreography.
 Counts CountsOf(const ChoreographyProof& proof);
 
 /// Returns what is known of the choreography as a whole.

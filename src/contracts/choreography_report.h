@@ -5,20 +5,21 @@
 
 #include "contracts/choreography.h"
 
-/// What was proved of a choreography, as text and as data.
+/// Presents what was proved of a choreography, as text and as data.
 namespace rondo::contracts {
 
-/// One line for each kind of obligation: how many hold, fail, are open, and how long that took.
+/// Returns a table with one line for each kind of obligation: how many hold, fail, are open, and how long
+/// that took.
 std::string ChoreographyTable(const ChoreographyProof& report);
 
-/// The verdict and what it rests on.
+/// Returns the verdict and what it rests on.
 std::string ChoreographySummary(const ChoreographyProof& report, const diag::SourceSet& sources);
 
-/// `FILE:LINE: thread region REGION  # of `cart`` for each region that was found.
+/// Returns a line `FILE:LINE: thread region REGION  # of `cart`` for each region that was found.
 std::string RegionLines(const choreo::Inference& regions, const diag::SourceSet& sources);
 
-/// {choreography, verdict, obligations: [{id, kind, title, place, verdict, ...}], missing, regions,
-/// rests_on}.
+/// Returns the report as JSON: {choreography, verdict, obligations: [{id, kind, title, place, verdict, ...}],
+/// missing, regions, rests_on}.
 nlohmann::json ToJson(const ChoreographyProof& report, const diag::SourceSet& sources);
 
 }  // namespace rondo::contracts

@@ -13,19 +13,20 @@
 #include "verdict/basis.h"
 #include "verdict/verdict.h"
 
-/// Contracts of motions and of ports: found, decided, certified, kept for other proofs.
+/// Finds, decides and certifies contracts of motions and of ports, and keeps them for other proofs.
 namespace rondo::contracts {
 
-/// One contract, and what became of it.
+/// Holds one contract, and what became of it.
 struct ContractResult {
   robot::MotionProblem made;
   diag::Span span;                        ///< of the motion
   std::string impossible;                 ///< why there is no problem to decide, if there is none
-  std::optional<reach::Outcome> outcome;  ///< nothing: not begun
+  std::optional<reach::Outcome> outcome;  ///< what reachability found; nothing: not begun
   double seconds = 0;
   std::optional<reach::certify::Acceptance> certified;  ///< of a proof, by the checker; nothing: not asked
   double certify_seconds = 0;
 
+  /// Reports whether the checker has accepted the proof.
   bool IsCertified() const { return certified && certified->accepted; }
   std::vector<std::string> domain;        ///< what else a proof is limited to
   const choreo::Graph* graph = nullptr;   ///< of a choreography's motion
@@ -39,7 +40,7 @@ struct ContractResult {
 /// Returns what is known of a contract; one that was not begun is unknown.
 verdict::Verdict VerdictOf(const ContractResult& result);
 
-/// Returns the word for it; `not begun` is one.
+/// Returns the word for it in tables; `not begun` is one.
 std::string_view Word(const ContractResult& result);
 
 /// Returns what a proof of it rests on.

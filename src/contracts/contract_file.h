@@ -8,20 +8,21 @@
 #include "base/result.h"
 #include "contracts/load.h"
 
-/// What files about a contract have in common: certificates, and trajectories that break it.
+/// Shares what files about a contract have in common: certificates, and trajectories that break it.
 namespace rondo::contracts {
 
+/// Says which contract of which files is meant.
 struct ContractName {
   std::vector<std::string> files;  ///< robots and choreographies, or a Koord program
-  std::string spec;
+  std::string spec;                ///< the specification of the program; empty: beside it
   std::string contract;
 };
 
-/// With the paths made absolute.
+/// Returns the name as JSON of this format, with the paths made absolute.
 nlohmann::json ContractToJson(const char* format, const ContractName& name);
-/// Nothing if something is missing.
+/// Reads such JSON; returns nothing if something is missing.
 std::optional<ContractName> ContractFromJson(const nlohmann::json& json);
-/// Is this an object with that `format`?
+/// Reports whether this is an object with that `format`.
 bool HasFormat(const nlohmann::json& json, const char* format);
 
 /// Reads the files and finds the contract.

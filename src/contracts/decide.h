@@ -5,8 +5,10 @@
 #include "base/stop.h"
 #include "contracts/contract.h"
 
+/// Decides contracts.
 namespace rondo::contracts {
 
+/// Says how a contract is decided.
 struct DecideOptions {
   double timeout = 60;                           ///< seconds for each contract
   unsigned jobs = 0;                             ///< threads; 0: one for each core

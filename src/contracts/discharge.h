@@ -8,14 +8,16 @@
 #include "contracts/load.h"
 #include "solve/cache/proof_cache.h"
 
+/// Lets proofs of programs and choreographies rest on contracts that were proved before.
 namespace rondo::contracts {
 
-/// Proved contracts on disk: what `rondo reach` has proved, `rondo prove` need not assume. An entry is the
-/// complete problem, so a change of a model, a controller or a contract is another problem.
+/// Keeps proved contracts on disk, and finds them again: what `rondo reach` has proved, `rondo prove` need
+/// not assume. An entry is the complete problem, so a change of a model, a controller or a contract is
+/// another problem.
 void StoreProved(const ContractResult& result, const solve::cache::ProofCache& cache);
 bool IsProved(const ContractResult& result, const solve::cache::ProofCache& cache);
 
-/// For each choreography the motions (`Type.Motion`) all of whose contracts are proved.
+/// Returns, for each choreography, the motions (`Type.Motion`) all of whose contracts are proved.
 std::map<const choreo::Graph*, std::set<std::string>> ProvedMotions(workspace::LoadedModule& motion,
                                                                     const solve::cache::ProofCache& cache);
 

@@ -9,28 +9,31 @@
 #include "workspace/koord_files.h"
 #include "workspace/module_files.h"
 
+/// Finds the contracts that files contain.
 namespace rondo::contracts {
 
-/// The contracts of the motions that choreographies use; without any, of all robot types, as far as they have
-/// controllers or dynamics and their parameters have values or ranges.
-/// `reduce`: use that places do not matter, where they do not, but keep the parameter `keep`. `left_out`:
-/// motions of robot types that cannot be looked at alone, and why.
+/// Returns the contracts of the motions that choreographies use; without any, of all robot types, as far as
+/// they have controllers or dynamics and their parameters have values or ranges.
+/// @param reduce  use that places do not matter, where they do not.
+/// @param keep  a parameter that stays nevertheless.
+/// @param left_out  gets the motions of robot types that cannot be looked at alone, and why.
 std::vector<ContractResult> ContractsOf(workspace::LoadedModule& motion, bool reduce = true,
                                         std::string_view keep = "",
                                         std::vector<std::string>* left_out = nullptr);
 
-/// The models that the platforms of a Koord program name, read from their files.
+/// Holds the models that the platforms of a Koord program name, read from their files.
 struct Platforms {
   std::vector<std::unique_ptr<workspace::LoadedModule>> files;
   std::vector<std::unique_ptr<robot::World>> worlds;
 };
 
-/// The controller assumptions of the program whose modules have a platform.
-/// `loose`: a parameter of the program or of the models that may have any value between two bounds.
+/// Returns the controller assumptions of the program whose modules have a platform, as contracts.
+/// @param platforms  gets the models; must outlive the result.
+/// @param loose  a parameter of the program or of the models that may have any value between two bounds.
 std::vector<ContractResult> PortContractsOf(const workspace::LoadedKoord& koord, Platforms& platforms,
                                             workspace::Session& session, const robot::Loose* loose = nullptr);
 
-/// Files with contracts, and what they are about.
+/// Holds files with contracts, and what they are about.
 struct LoadedContracts {
   std::unique_ptr<workspace::LoadedKoord> koord;
   std::unique_ptr<workspace::LoadedModule> motion;
@@ -39,8 +42,10 @@ struct LoadedContracts {
   std::vector<std::string> left_out;  ///< motions that cannot be looked at alone, and why
 };
 
-/// The contracts of robots and choreographies (`.rondo`), or of one Koord program. False after an error,
-/// which is in the session. `reduce`: as for ContractsOf; `loose` is kept.
+/// Loads the contracts of robots and choreographies (`.rondo`), or of one Koord program, into `loaded`.
+/// Returns false after an error, which is in the session.
+/// @param reduce  as for ContractsOf.
+/// @param loose  is kept: a parameter that may have any value between two bounds.
 bool LoadContracts(const std::vector<std::string>& files, const std::string& spec, const robot::Loose* loose,
                    bool reduce, workspace::Session& session, LoadedContracts& loaded);
 

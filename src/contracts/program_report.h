@@ -5,18 +5,19 @@
 
 #include "koord/prove/prove.h"
 
-/// What was proved of a Koord program, as text and as data.
+/// Presents what was proved of a Koord program, as text and as data.
 namespace rondo::contracts {
 
-/// What was asked: file, number of obligations, scope.
+/// Returns what was asked: file, number of obligations, scope.
 std::string ProveHeader(const std::string& file, const koord::Report& report,
                         const koord::ProveOptions& options, size_t cached);
-/// One line for each invariant, one word for each obligation.
+/// Returns a table with one line for each invariant, one word for each obligation.
 std::string ProveTable(const koord::Report& report);
-/// The verdict, and what it rests on.
+/// Returns the verdict, and what it rests on.
 std::string ProveSummary(const koord::Report& report, const koord::ProveOptions& options);
 
-/// {invariants: [{name, verdict, place, obligations: [{id, case, verdict, seconds, used}]}], rests_on, ...}.
+/// Returns the report as JSON: {invariants: [{name, verdict, place, obligations: [{id, case, verdict,
+/// seconds, used}]}], rests_on, ...}.
 nlohmann::json ToJson(const koord::Report& report, const diag::SourceSet& sources);
 
 }  // namespace rondo::contracts

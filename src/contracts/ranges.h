@@ -10,19 +10,21 @@
 #include "contracts/contract.h"
 #include "expr/rational.h"
 
+/// Encloses what people ask about motions, such as how fast a robot gets.
 namespace rondo::contracts {
 
-/// `0.5..4`; nullopt if it is no such range.
+/// Reads a range such as `0.5..4`; returns nullopt if it is no such range.
 std::optional<std::pair<expr::Rational, expr::Rational>> ReadRange(const std::string& text);
 
-/// What a quantity can be while a contract is carried out.
+/// Holds what a quantity can be while a contract is carried out.
 struct AskedRange {
   std::string text;           ///< the quantity, as it was asked for
-  std::string unit;           ///< of SI: `m`, `m/s`
+  std::string unit;           ///< its SI unit: `m`, `m/s`
   double from = 0, to = 0;    ///< seconds
-  interval::Interval values;  ///< it never has others then
+  interval::Interval values;  ///< encloses all its values in that time
 };
 
+/// Holds the ranges that were asked for, or why there are none.
 struct Ranges {
   std::vector<AskedRange> all;
   std::string trouble;  ///< why there are none; for people, with where in a quantity it is wrong
@@ -35,6 +37,7 @@ Ranges RangesOf(const ContractResult& contract, const std::vector<std::string>& 
                 const std::optional<std::pair<expr::Rational, expr::Rational>>& between, unsigned jobs,
                 const base::StopToken& stop);
 
+/// Returns the ranges as text for people, and as JSON.
 std::string ToText(const Ranges& ranges);
 nlohmann::json ToJson(const Ranges& ranges);
 

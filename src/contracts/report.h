@@ -7,14 +7,17 @@
 #include "contracts/contract.h"
 #include "diag/diagnostic.h"
 
+/// Reports what became of contracts.
 namespace rondo::contracts {
 
-/// Reports what is refuted or open: where, by how much, from which start.
+/// Reports a contract that is refuted or open: where it fails, by how much, from which start.
 void ReportContract(const ContractResult& result, diag::Diagnostics& diagnostics);
 
-/// A line for each contract: verdict, seconds, seconds of the checker, parts.
+/// Returns a table with a line for each contract: verdict, seconds, seconds of the checker, parts of the
+/// initial set.
 std::string ContractTable(const std::vector<ContractResult>& results);
 
+/// Returns a contract and what became of it as JSON.
 nlohmann::json ToJson(const ContractResult& result);
 
 }  // namespace rondo::contracts

@@ -5,17 +5,18 @@
 #include "base/result.h"
 #include "contracts/load.h"
 
+/// Writes, reads and checks certificates of tubes (docs/theory.md, "Certificates of tubes").
 namespace rondo::contracts {
 
-/// What a proof leaves to be checked.
+/// Returns what a proof leaves to be checked.
 reach::certify::Certificate CertificateOf(const reach::Proved& proved);
 
-/// Has the certificate checked, as one of this contract: the verdict goes into the result.
+/// Has the certificate checked, as one of this contract; the verdict of the checker goes into the result.
 void CertifyContract(ContractResult& result, const reach::certify::Certificate& certificate, unsigned jobs,
                      const base::StopToken& stop);
 
-/// A certificate as `rondo reach --certificates` writes it and `rondo certify` reads it: which contract of
-/// which files, and how it was proved. The contract is read from its files again when it is checked.
+/// Holds a certificate as `rondo reach --certificates` writes it and `rondo certify` reads it: which contract
+/// of which files, and how it was proved. The contract is read from its files again when it is checked.
 struct TubeFile {
   std::vector<std::string> files;
   std::string spec;
@@ -23,10 +24,12 @@ struct TubeFile {
   reach::certify::Certificate certificate;
 };
 
-/// Writes it as a whole or not at all.
+/// Writes the file as a whole or not at all.
+/// @error if it cannot be written.
 base::Result<bool> SaveTube(const std::string& path, const TubeFile& file);
-/// Should this be the text of such a file? (Scripts begin with a parenthesis or a comment.)
+/// Reports whether this should be the text of such a file. (Scripts begin with a parenthesis or a comment.)
 bool IsTube(std::string_view text);
+/// Reads the text of such a file.
 /// @error says what is wrong with the text.
 base::Result<TubeFile> ReadTube(std::string_view text);
 

@@ -6,21 +6,23 @@
 #include "diag/kind.h"
 #include "diag/source.h"
 
+/// Diagnostics: what is wrong with the input of a user, where, and what would mend it.
 namespace rondo::diag {
 
-/// A second place that matters, and why.
+/// Marks a second place that matters, and says why.
 struct Label {
   Span span;
   std::string message;
 };
 
-/// An edit that would resolve the diagnostic.
+/// Describes an edit that would resolve the diagnostic: the text at `span` becomes `replacement`.
 struct FixIt {
   Span span;
   std::string replacement;
 };
 
-/// One cause, reported once. `message` is lower case, without full stop, with code in backticks.
+/// Reports one cause, once. `message` is lower case, without full stop, with code in backticks. The members
+/// below add a part each and return the diagnostic, so that calls can be chained.
 struct Diagnostic {
   Kind kind;
   Severity severity;
@@ -28,29 +30,33 @@ struct Diagnostic {
   std::string message;
   std::string label;  ///< shown under the primary span
   std::vector<Label> labels;
-  std::vector<std::string> notes;  ///< may have several lines: tables
-  std::vector<std::string> helps;
-  std::vector<FixIt> fixes;
+  std::vector<std::string> notes;  ///< further facts; a note may have several lines, such as a table
+  std::vector<std::string> helps;  ///< what the user might do, in words
+  std::vector<FixIt> fixes;        ///< edits that a tool can make
 
+  /// Sets the label under the primary span.
   Diagnostic& Under(std::string text);
+  /// Adds a label at another place.
   Diagnostic& At(Span where, std::string text);
   Diagnostic& Note(std::string text);
   Diagnostic& Help(std::string text);
   Diagnostic& Fix(Span where, std::string replacement);
 };
 
-/// Where phases report. Keeps the order of reporting; a second report of the same kind at the same span is
-/// dropped.
+/// Collects what phases report, in the order of reporting. A second report of the same kind, at the same span
+/// and with the same message, is dropped.
 class Diagnostics {
  public:
-  /// The reference stays valid until the next report.
+  /// Adds a diagnostic with the severity of its kind. The reference stays valid until the next report; what
+  /// is added to a report that was dropped is lost.
   Diagnostic& Report(Kind kind, Span span, std::string message);
 
   const std::vector<Diagnostic>& all() const { return diagnostics_; }
+  /// Reports whether anything of severity kError was reported; warnings and notes do not count.
   bool has_errors() const { return errors_ > 0; }
   size_t errors() const { return errors_; }
 
-  /// By file, then position; reports about no place come last.
+  /// Returns all diagnostics by file, then position; reports about no place come last.
   std::vector<Diagnostic> Sorted() const;
 
  private:

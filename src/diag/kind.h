@@ -4,12 +4,14 @@
 #include <span>
 #include <string_view>
 
+/// The kinds of diagnostics, and what `rondo explain` says about each.
 namespace rondo::diag {
 
+/// Says how bad a diagnostic is. An error alone makes the input wrong.
 enum class Severity : uint8_t { kError, kWarning, kNote };
 
-/// Every kind of diagnostic that Rondo reports. The registry holds its id, explanation and minimal example; a
-/// golden case under testdata/ shows each one.
+/// Names every kind of diagnostic that Rondo reports. The registry holds its id, explanation and minimal
+/// example; a golden case under testdata/ shows each one.
 enum class Kind : uint8_t {
   // Files.
   kFileUnreadable,
@@ -146,26 +148,30 @@ enum class Kind : uint8_t {
   // Fleets.
   kFleetSyntax,
   kFleetValue,
-  kCount_,  // not a kind
+  kCount_,  ///< the number of kinds, and none itself
 };
 
+/// Describes one kind for people.
 struct KindInfo {
   Kind kind;
   std::string_view id;  ///< what people type after `rondo explain`
   Severity severity;
-  std::string_view summary;  ///< one line
-  std::string_view explanation;
-  std::string_view example;  ///< a program for which exactly this kind is reported
-  std::string_view verb;     ///< the verb that reports it: `check`, `prove` or `solve`
+  std::string_view summary;      ///< one line, for lists of kinds
+  std::string_view explanation;  ///< what `rondo explain` prints: the rule, and why it is one
+  std::string_view example;      ///< a program for which exactly this kind is reported
+  std::string_view verb;         ///< the verb that reports it: `check`, `prove` or `solve`
 };
 
+/// Returns the entry of the registry for this kind; every kind has one.
 const KindInfo& Info(Kind kind);
 
-/// nullptr when no kind has this id.
+/// Returns the kind with this id; nullptr when no kind has it.
 const KindInfo* FindKind(std::string_view id);
 
+/// Returns the whole registry: every kind once.
 std::span<const KindInfo> AllKinds();
 
+/// Returns the word that messages begin with: `error`, `warning` or `note`.
 std::string_view SeverityName(Severity severity);
 
 }  // namespace rondo::diag

@@ -4,9 +4,11 @@
 
 #include "diag/kind.h"
 
-/// The registry, one table per family; `registry.cc` joins them and insists that no kind is missing.
+/// The tables that make up the registry of kinds, one for each family; `registry.cc` joins them and insists
+/// that no kind is missing. Whoever adds a kind adds its entry to one of these.
 namespace rondo::diag {
 
+/// Return the kinds of one family each, with their explanations and examples.
 std::span<const KindInfo> FileKinds();
 std::span<const KindInfo> SyntaxKinds();
 std::span<const KindInfo> SmtKinds();

@@ -10,47 +10,53 @@
 #include "explore/transition_system.h"
 #include "explore/visited_set.h"
 
+/// Breadth first search over any transition system, for explorations of Koord programs.
 namespace rondo::explore {
 
+/// Says how far to search, and what for.
 struct SearchOptions {
-  std::optional<uint32_t> depth;  ///< transitions from an initial state
-  uint64_t states = 100'000'000;  ///< give up beyond so many
-  bool compact = false;           ///< hash compaction
-  bool deadlocks = false;         ///< look for them
+  std::optional<uint32_t> depth;  ///< at most so many transitions from an initial state; none: no limit
+  uint64_t states = 100'000'000;  ///< the search gives up once it has visited so many
+  /// Hash compaction: a hash for each state instead of its words; a state may be missed.
+  bool compact = false;
+  bool deadlocks = false;  ///< whether a state that `Deadlocked` accepts ends the search
+  /// Tells how far a search is.
   struct Progress {
     uint64_t states;
-    uint64_t frontier;
+    uint64_t frontier;  ///< states that were visited, and whose successors were not listed yet
     uint32_t depth;
-    double seconds;
+    double seconds;  ///< since the search began
   };
-  std::function<void(const Progress&)> progress;  ///< every now and then
+  std::function<void(const Progress&)> progress;  ///< called now and then, at most every 200 ms
   base::StopToken stop;
 };
 
+/// Says why a search ended.
 enum class Ending : uint8_t {
-  kComplete,  ///< every reachable state was visited
-  kDepth,     ///< every state up to the depth
-  kStates,    ///< too many
-  kStopped,
-  kBroken,
-  kDeadlock,
+  kComplete,  ///< every reachable state was visited, and nothing is wrong
+  kDepth,     ///< every state up to the depth was visited, and nothing is wrong
+  kStates,    ///< the limit of states was reached
+  kStopped,   ///< the stop token asked for it
+  kBroken,    ///< a property is broken; `path` leads there
+  kDeadlock,  ///< a state is dead; `path` leads there
 };
 
+/// Tells what a search found, and what it took.
 struct SearchResult {
   Ending ending = Ending::kComplete;
-  uint64_t states = 0;
-  uint64_t transitions = 0;  ///< listed, known targets included
-  uint32_t depth = 0;        ///< of the deepest state
-  uint64_t initial = 0;
+  uint64_t states = 0;       ///< that were visited, each once
+  uint64_t transitions = 0;  ///< that were listed, those to known states included
+  uint32_t depth = 0;        ///< of the deepest state, in transitions
+  uint64_t initial = 0;      ///< initial states, each once
   double seconds = 0;
-  size_t bytes = 0;
-  Broken broken;
-  /// From an initial state to the one that is broken or dead, or whose successors break: the words of each,
-  /// by breadth first search as few as there can be.
+  size_t bytes = 0;  ///< of states, table and predecessors, as allocated
+  Broken broken;     ///< which property, if the ending is kBroken
+  /// The words of each state from an initial one to the state that is broken or dead, or whose successors
+  /// break something. As few states as there can be, since the search is breadth first.
   std::vector<std::vector<Word>> path;
 };
 
-/// One breadth first search.
+/// Runs one breadth first search; an object serves one call of `Run`. See `Search`.
 template <TransitionSystem S>
 class Searcher {
  public:
@@ -189,9 +195,10 @@ class Searcher {
   Clock::time_point last_ = begin_;
 };
 
-/// Breadth first search from all initial states.
+/// Searches breadth first from all initial states, by one thread.
 ///
-/// Exact unless `options.compact`. O(states) memory: the words of each state and 8 bytes more.
+/// Exact unless `options.compact`: then a state whose hash was seen before is taken for visited. Memory is
+/// O(states): the words of each state (or its hash) and 12 to 20 bytes more, spare capacity aside.
 template <TransitionSystem S>
 SearchResult Search(S& system, const SearchOptions& options) {
   return Searcher<S>(system, options).Run();

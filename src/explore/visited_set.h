@@ -5,25 +5,31 @@
 
 #include "explore/transition_system.h"
 
+/// The memory of a search.
 namespace rondo::explore {
 
-/// The states that were visited, numbered in the order of their insertion. Exact, or by a hash of 64 bits
-/// alone (hash compaction: two states that share a hash count as one).
+/// Numbers the states that were visited, in the order of their insertion. Exact, or by a hash of 64 bits
+/// alone (hash compaction): then two states that share a hash count as one. The index is an open-addressing
+/// table that is at most half full.
 class VisitedSet {
  public:
+  /// `words`: the length of every state. `compact`: keep hashes instead of states.
   VisitedSet(size_t words, bool compact);
 
-  /// The number of the state; `fresh` tells whether it is new.
+  /// Returns the number of the state, which is added if it was not there; `fresh` tells whether it was added.
   uint32_t Insert(std::span<const Word> state, bool& fresh);
   size_t size() const { return count_; }
-  /// Only of exact sets.
+  /// Returns the words of a state, valid until the next insertion. Only where states are kept: with hash
+  /// compaction there are none.
   std::span<const Word> operator[](uint32_t number) const {
     return {states_.data() + static_cast<size_t>(number) * words_, words_};
   }
-  /// Does the state have this number?
+  /// Reports whether the state has this number; with hash compaction, whether its hash is that one's.
   bool Is(std::span<const Word> state, uint32_t number) const;
+  /// Returns the memory that states and table occupy, as allocated.
   size_t bytes() const;
 
+  /// Is the largest number of states that a set may hold: numbers have 32 bits.
   static constexpr uint32_t kMost = 0xfffffff0u;
 
  private:

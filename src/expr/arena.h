@@ -16,12 +16,15 @@
 /// Sorts, symbols and hash-consed terms: the one language in which every part of Rondo states what must hold.
 namespace rondo::expr {
 
+/// Name sorts, symbols and terms of one arena.
 using SortId = base::Id<struct SortTag>;
 using SymbolId = base::Id<struct SymbolTag>;
 using TermId = base::Id<struct TermTag>;
 
+/// Says what the members of a sort are; see `Sort` for its parts.
 enum class SortKind : uint8_t { kBool, kInt, kReal, kEnum, kRecord, kArray, kList, kOpaque };
 
+/// Describes a set of values. A sort is known by its name: equal names, one id.
 struct Sort {
   SortKind kind;
   std::string name;
@@ -29,20 +32,21 @@ struct Sort {
   std::vector<SortId> parts;       ///< record: field sorts; array: index, element; list: element
 };
 
-/// A constant, a variable or a function that the logic does not interpret.
+/// Is a constant, a variable or a function that the logic does not interpret.
 struct Symbol {
   std::string name;
-  std::vector<SortId> parameters;
+  std::vector<SortId> parameters;  ///< none: a constant or a variable
   SortId result;
-  bool bound = false;  ///< a variable of exactly one quantifier
+  bool bound = false;  ///< whether it is a variable of exactly one quantifier
 };
 
+/// Is an operator applied to arguments. Its arguments are found with `Arena::args`.
 struct Term {
   Op op;
   SortId sort;
   uint32_t payload = 0;  ///< symbol, number, member, field, or how many variables a quantifier binds
-  uint32_t first = 0;
-  uint32_t count = 0;
+  uint32_t first = 0;    ///< where its arguments begin in the arena's list of all arguments
+  uint32_t count = 0;    ///< how many arguments it has
 };
 
 /// Owns sorts, symbols and terms. Equal terms have equal ids. Building is single-threaded; reading is not.
@@ -59,7 +63,8 @@ class Arena {
   SortId Bool() const { return bool_; }
   SortId Int() const { return int_; }
   SortId Real() const { return real_; }
-  /// An enumeration, record or opaque sort with this name; made at the first call, found at later ones.
+  /// Returns the enumeration, record or opaque sort with this name; made at the first call, found at later
+  /// ones.
   SortId Enum(std::string_view name, std::vector<std::string> members);
   SortId Record(std::string_view name, std::vector<std::string> fields, std::vector<SortId> sorts);
   SortId Opaque(std::string_view name);
@@ -69,8 +74,9 @@ class Arena {
   size_t sort_count() const { return sorts_.size(); }
 
   // -- symbols
+  /// Returns the symbol with this name, made at the first call; later calls must give the same sorts (CHECK).
   SymbolId Declare(std::string_view name, std::vector<SortId> parameters, SortId result);
-  /// A symbol unlike any other: `name`, or `name!1`, `name!2`, ...
+  /// Returns a symbol unlike any other, called `name`, or `name!1`, `name!2`, ...
   SymbolId Fresh(std::string_view name, std::vector<SortId> parameters, SortId result);
   bool IsDeclared(std::string_view name) const { return symbol_names_.contains(std::string(name)); }
   const Symbol& symbol(SymbolId id) const { return symbols_[id.index()]; }
@@ -79,11 +85,14 @@ class Arena {
   TermId True() const { return true_; }
   TermId False() const { return false_; }
   TermId Constant(bool value) const { return value ? true_ : false_; }
+  /// Returns a number of sort Int or Real.
   TermId Number(SortId sort, const Rational& value);
   TermId IntNumber(int64_t value) { return Number(int_, Rational(value)); }
+  /// Returns a member of an enumeration, counted from 0.
   TermId Member(SortId sort, uint32_t member);
   TermId Variable(SymbolId symbol);
   TermId FreshConstant(std::string_view name, SortId sort) { return Variable(Fresh(name, {}, sort)); }
+  /// Returns a variable for one quantifier (see `Forall`), unlike any other.
   TermId FreshBound(std::string_view name, SortId sort);
 
   // -- logic
@@ -95,7 +104,7 @@ class Arena {
   TermId Implies(TermId a, TermId b) { return Or(Not(a), b); }
   TermId Eq(TermId a, TermId b);
   TermId Ite(TermId condition, TermId then, TermId otherwise);
-  /// `variables` come from FreshBound and belong to this quantifier alone.
+  /// Quantifies the body. `variables` come from FreshBound and belong to this quantifier alone.
   TermId Forall(const std::vector<TermId>& variables, TermId body);
   TermId Exists(const std::vector<TermId>& variables, TermId body);
 
@@ -105,7 +114,7 @@ class Arena {
   TermId Sub(TermId a, TermId b) { return Add(a, Neg(b)); }
   TermId Neg(TermId a);
   TermId Mul(TermId a, TermId b);
-  TermId Divide(TermId a, TermId b);  ///< Real; a/0 is some number, as in SMT-LIB
+  TermId Divide(TermId a, TermId b);  ///< of reals; a/0 is some number, as in SMT-LIB
   TermId IntDiv(TermId a, TermId b);  ///< Euclidean; a div 0 is some number
   TermId Mod(TermId a, TermId b);
   TermId Le(TermId a, TermId b);
@@ -123,9 +132,11 @@ class Arena {
   TermId Length(TermId list);
   TermId At(TermId list, TermId index);  ///< some element when the index is out of range
   TermId Append(TermId list, TermId element);
-  TermId Remove(TermId list, TermId element);  ///< without its first occurrence; unchanged if there is none
+  /// Returns the list without the first occurrence of the element; the same list if there is none.
+  TermId Remove(TermId list, TermId element);
 
-  TermId Set(TermId list, TermId index, TermId element);  ///< unchanged when the index is out of range
+  /// Returns the list with another element at the index; the same list when the index is out of range.
+  TermId Set(TermId list, TermId index, TermId element);
 
   // -- reading
   const Term& term(TermId id) const { return terms_[id.index()]; }
@@ -137,20 +148,22 @@ class Arena {
   Elementary elementary_of(TermId id) const { return static_cast<Elementary>(terms_[id.index()].payload); }
   SymbolId symbol_of(TermId id) const { return SymbolId(terms_[id.index()].payload); }
   bool IsNumber(TermId id) const { return op(id) == Op::kNumber; }
-  /// Does a variable of a quantifier occur outside that quantifier? Such terms make no sense on their own.
+  /// Reports whether a variable of a quantifier occurs outside that quantifier. Such terms make no sense on
+  /// their own.
   bool IsOpen(TermId id) const { return open_[id.index()]; }
   bool HasQuantifier(TermId id) const { return quantified_[id.index()]; }
-  /// May some part of it have no value (a root, a logarithm, an arcsine or arccosine)? What is simplified
-  /// keeps where such parts have one (docs/adr/0005-undefined-terms.md).
+  /// Reports whether some part of it may have no value (a root, a logarithm, an arcsine or arccosine). What
+  /// is simplified keeps where such parts have one (docs/adr/0005-undefined-terms.md).
   bool IsPartial(TermId id) const { return partial_[id.index()]; }
   size_t size() const { return terms_.size(); }
 
-  /// The operator applied as it stands, nothing simplified: for tests and for rebuilding.
+  /// Returns the operator applied as it stands, nothing simplified: for tests and for rebuilding.
   TermId Raw(Op op, SortId sort, uint32_t payload, std::vector<TermId> args);
-  /// Builds through the simplifying constructors.
+  /// Returns the term with the operator of `like` and other arguments, built through the simplifying
+  /// constructors.
   TermId Rebuild(const Term& like, std::vector<TermId> args);
 
-  /// Called with (rewrite, plain term, simplified term) whenever a rewrite fires. For tests only.
+  /// Is called with (rewrite, plain term, simplified term) whenever a rewrite fires. For tests only.
   std::function<void(Rewrite, TermId, TermId)> observer;
 
  private:
@@ -170,7 +183,7 @@ class Arena {
   TermId Quantify(Op op, const std::vector<TermId>& variables, TermId body);
   TermId Compare(Op op, TermId a, TermId b);
   TermId Zero(TermId t);
-  /// a - b if that is a number whatever the variables are.
+  /// Returns a - b if that is a number whatever the variables are.
   std::optional<Rational> ConstantDistance(TermId a, TermId b) const;
 
   std::vector<Sort> sorts_;

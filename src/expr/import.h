@@ -4,6 +4,7 @@
 
 #include "expr/arena.h"
 
+/// Terms of one arena in another.
 namespace rondo::expr {
 
 /// Copies terms from one arena to another, so that threads can build terms without each other. Symbols keep
@@ -12,6 +13,7 @@ namespace rondo::expr {
 class Importer {
  public:
   Importer(const Arena& from, Arena& to) : from_(from), to_(to) {}
+  /// Returns the copy of a term of `from`. What an earlier call has copied is not copied again.
   TermId operator()(TermId term);
 
  private:

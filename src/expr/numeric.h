@@ -4,9 +4,10 @@
 
 #include "expr/arena.h"
 
+/// Terms in double precision, for what need not be rigorous.
 namespace rondo::expr {
 
-/// Values of real terms in double precision, for search, pictures and tests: nothing here is rigorous.
+/// Evaluates real terms in double precision, for search, pictures and tests: nothing here is rigorous.
 /// Variables without a value are 0; where a function has no value, the result is NaN. Each distinct subterm
 /// is computed once.
 class Numeric {
@@ -14,8 +15,9 @@ class Numeric {
   using Point = std::unordered_map<TermId, double>;
 
   Numeric(const Arena& arena, const Point& point) : arena_(arena), known_(point) {}
+  /// Returns the value of a term of sort Int or Real.
   double operator()(TermId term);
-  /// How far the formula is from being true: 0 if it is. Of a comparison, by how much it fails; of a
+  /// Returns how far the formula is from being true: 0 if it is. Of a comparison, by how much it fails; of a
   /// conjunction the largest, of a disjunction the smallest.
   double Violation(TermId formula) { return Miss(formula, true); }
 

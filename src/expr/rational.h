@@ -7,9 +7,10 @@
 #include <string>
 #include <string_view>
 
+/// Exact numbers: what terms, certificates and parsers compute with.
 namespace rondo::expr {
 
-/// An exact rational number of any size (GMP). A value type; copies are deep.
+/// Is an exact rational number of any size (GMP), always in lowest terms. A value type; copies are deep.
 class Rational {
  public:
   Rational(int64_t value = 0);  // NOLINT: implicit by design
@@ -32,19 +33,21 @@ class Rational {
 
   bool IsZero() const;
   bool IsInteger() const;
+  /// Returns the largest integer that is not above it.
   Rational Floor() const;
-  /// The square root, if it is rational.
+  /// Returns the square root, if it is rational.
   std::optional<Rational> ExactRoot() const;
-  /// The exact value of a finite double.
+  /// Returns the exact value of a finite double.
   static Rational FromDouble(double value);
+  /// Returns a double near it, less than one unit in the last place away (GMP rounds towards zero).
   double ToDouble() const;
-  /// How many decimal digits numerator and denominator have together, or one or two more.
+  /// Returns how many decimal digits numerator and denominator have together, or one or two more.
   size_t Digits() const;
   size_t Hash() const;
-  /// Numerator and denominator in decimal; the sign is the numerator's.
+  /// Return numerator and denominator in decimal; the sign is the numerator's.
   std::string Numerator() const;
   std::string Denominator() const;
-  /// `3`, `0.25`, and `1/3` where no short decimal is exact.
+  /// Returns `3`, `0.25`, and `1/3` where no short decimal is exact.
   std::string ToString() const;
 
  private:
@@ -53,7 +56,7 @@ class Rational {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The quotient of SMT-LIB's `div`: rounds so that 0 <= a - b*q < |b|. Requires b != 0.
+/// Returns the quotient q of SMT-LIB's `div`, for which 0 <= a - b*q < |b|. Requires b != 0.
 Rational EuclideanQuotient(const Rational& a, const Rational& b);
 
 }  // namespace rondo::expr

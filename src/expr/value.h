@@ -6,10 +6,11 @@
 
 #include "expr/rational.h"
 
+/// Values of terms, as models and counterexamples give them.
 namespace rondo::expr {
 
-/// A value of a model: a truth value, a number, the name of a member of an enumeration or of an element of an
-/// opaque sort, or a record's fields.
+/// Is a value of a model: a truth value, a number, the name of a member of an enumeration or of an element of
+/// an opaque sort, or a record's fields.
 struct Value {
   using Fields = std::vector<Value>;
   std::variant<bool, Rational, std::string, Fields> data;
@@ -21,7 +22,7 @@ struct Value {
   friend bool operator==(const Value&, const Value&) = default;
 };
 
-/// `true`, `0.5`, `red`, `(1, 2, 3)`; numbers without a short decimal as fractions.
+/// Returns `true`, `0.5`, `red`, `(1, 2, 3)`; numbers without a short decimal as fractions.
 std::string ToString(const Value& value);
 
 }  // namespace rondo::expr

@@ -3,9 +3,10 @@
 #include "interval/batch.h"
 #include "interval/inverse.h"
 
-/// Internal to `interval`: the kernels for one instruction set.
+/// Internal to `interval`: the kernels for one instruction set, made from the operations on intervals.
 namespace rondo::interval {
 
+/// Makes the table of kernels for the instruction set `S`, which has at least the lanes of a Batch.
 template <typename S>
 struct BatchImpl {
   using I = Inverse<S>;
@@ -50,6 +51,7 @@ struct BatchImpl {
   static void InvertPower(const Batch& z, Batch& x, int n) { Store(I::Pow(Load(z), Load(x), n), x); }
   static unsigned EmptyLanes(const Batch& a) { return S::Bits(O::IsEmpty(Load(a))) & 0xffu; }
 
+  /// Returns the table, under this name.
   static constexpr Kernels Table(const char* name) {
     Kernels k{};
     k.name = name;

@@ -8,12 +8,13 @@
 /// each function gives, u = 2^-53; the tests measure them against MPFR.
 namespace rondo::interval {
 
+/// Computes the functions lane by lane, for the instruction set `S`: `V` holds doubles, `M` truth values.
 template <typename S>
 struct Elementary {
   using V = typename S::V;
   using M = typename S::M;
 
-  /// A value and a bound of its distance from the exact one.
+  /// Is a value and a bound of its distance from the exact one.
   struct Approx {
     V value;
     V error;
@@ -33,10 +34,10 @@ struct Elementary {
     return r;
   }
 
-  /// sin x and cos x for |x| <= kLargestAngle. Reduction x - k pi/2 in three parts (Cody and Waite): the
-  /// first product and difference are exact, the other two differences are rounded once each, so the reduced
-  /// argument is off by at most 2u. Series to r^17 and r^18, |r| <= 0.79: remainders below 2^-62; rounding
-  /// below 2u.
+  /// Computes sin x and cos x for |x| <= kLargestAngle (radians). Reduction x - k pi/2 in three parts (Cody
+  /// and Waite): the first product and difference are exact, the other two differences are rounded once each,
+  /// so the reduced argument is off by at most 2u. Series to r^17 and r^18, |r| <= 0.79: remainders below
+  /// 2^-62; rounding below 2u.
   static void SinCos(V x, Approx& sine, Approx& cosine) {
     const V k = S::Rint(S::Mul(x, C(0x1.45f306dc9c883p-1)));
     V r = S::Sub(x, S::Mul(k, C(1.57079632673412561417e+00)));
@@ -78,8 +79,8 @@ struct Elementary {
     cosine.error = flat;
   }
 
-  /// atan x. |x| > 1 by atan x = pi/2 - atan 1/x, then t > tan(pi/8) by the addition theorem: |t| <= 0.4143,
-  /// series to t^43 with remainder below 2^-59 relative; all steps keep the relative error below 6u.
+  /// Computes atan x. |x| > 1 by atan x = pi/2 - atan 1/x, then t > tan(pi/8) by the addition theorem: |t| <=
+  /// 0.4143, series to t^43 with remainder below 2^-59 relative; all steps keep the relative error below 6u.
   static Approx Atan(V x) {
     const V t0 = S::Abs(x);
     const M inverse = S::Lt(C(1), t0);
@@ -100,18 +101,19 @@ struct Elementary {
     return {value, S::Add(S::Mul(r, C(0x1p-49)), C(0x1p-1074))};
   }
 
-  /// asin x for |x| <= 1, as atan(x / sqrt(1 - x^2)): the argument is off by 5u relative, which atan does not
-  /// increase.
+  /// Computes asin x for |x| <= 1, as atan(x / sqrt(1 - x^2)): the argument is off by 5u relative, which atan
+  /// does not increase.
   static Approx Asin(V x) {
     const V root = S::Sqrt(S::Mul(S::Sub(C(1), x), S::Add(C(1), x)));
     Approx r = Atan(S::Div(x, root));
     r.error = S::Add(S::Mul(S::Abs(r.value), C(0x1p-48)), C(0x1p-1074));
     return r;
   }
+  /// Computes acos x for |x| <= 1, as pi/2 - asin x; its error is absolute.
   static Approx Acos(V x) { return {S::Sub(C(kHalfPi), Asin(x).value), C(0x1p-49)}; }
 
-  /// exp x for -745 <= x <= 709. x - k ln 2 in two parts, the first product exact: off by u; series to r^14,
-  /// |r| <= 0.35: remainder below 2^-58.
+  /// Computes exp x for -745 <= x <= 709. x - k ln 2 in two parts, the first product exact: off by u; series
+  /// to r^14, |r| <= 0.35: remainder below 2^-58.
   static Approx Exp(V x) {
     const V k = S::Rint(S::Mul(x, C(0x1.71547652b82fep+0)));
     V r = S::Sub(x, S::Mul(k, C(6.93147180369123816490e-01)));
@@ -136,8 +138,8 @@ struct Elementary {
     return {value, S::Add(S::Mul(value, C(0x1p-49)), C(0x1p-1073))};
   }
 
-  /// log x for finite x > 0: x = 2^k m with m in [sqrt 1/2, sqrt 2], log m = 2 atanh((m-1)/(m+1)); m - 1 is
-  /// exact.
+  /// Computes log x for finite x > 0: x = 2^k m with m in [sqrt 1/2, sqrt 2], log m = 2 atanh((m-1)/(m+1)); m
+  /// - 1 is exact.
   static Approx Log(V x) {
     const V k = PerLane(x, x, [](double v, double) {
       int e = 0;
@@ -156,6 +158,7 @@ struct Elementary {
     return {value, S::Add(S::Mul(S::Abs(value), C(0x1p-49)), C(0x1p-1074))};
   }
 
+  /// Applies `f` to each lane in turn: for what the instruction set does not have.
   static V PerLane(V a, V b, double (*f)(double, double)) {
     alignas(64) double x[S::kLanes];
     alignas(64) double y[S::kLanes];

@@ -7,9 +7,9 @@
 /// Rigorous interval arithmetic: every operation encloses the exact results of its arguments' members.
 namespace rondo::interval {
 
-/// A closed interval of reals with double bounds; a bound may be infinite. Empty if lo > hi. Operations have
-/// the guarantees of `Kernels` (batch.h): partial functions are enclosed over the part of the argument that
-/// lies in their domain, a quotient by zero is any number. An operation on an empty interval may give
+/// Is a closed interval of reals with double bounds; a bound may be infinite. Empty if lo > hi. Operations
+/// have the guarantees of `Kernels` (batch.h): partial functions are enclosed over the part of the argument
+/// that lies in their domain, a quotient by zero is any number. An operation on an empty interval may give
 /// anything.
 struct Interval {
   double lo = -std::numeric_limits<double>::infinity();
@@ -24,22 +24,24 @@ struct Interval {
   bool IsPoint() const { return lo == hi; }
   bool Contains(double x) const { return lo <= x && x <= hi; }
   bool Contains(Interval other) const { return lo <= other.lo && other.hi <= hi; }
-  /// hi - lo, rounded to nearest.
+  /// Returns hi - lo, rounded to nearest: for decisions, not for bounds.
   double Width() const { return hi - lo; }
-  /// A member of a non-empty interval, near its middle; finite.
+  /// Returns a member of a non-empty interval, near its middle; finite.
   double Middle() const;
   friend bool operator==(const Interval&, const Interval&) = default;
 };
 
+/// Is a product of intervals, one for each variable in turn; empty if one of them is.
 using Box = std::vector<Interval>;
 
+/// Enclose the results of the operation or function for all members of the arguments; angles in radians.
 Interval operator-(Interval a);
 Interval operator+(Interval a, Interval b);
 Interval operator-(Interval a, Interval b);
 Interval operator*(Interval a, Interval b);
 Interval operator/(Interval a, Interval b);
-Interval Meet(Interval a, Interval b);
-Interval Hull(Interval a, Interval b);  ///< of non-empty intervals
+Interval Meet(Interval a, Interval b);  ///< the intersection, perhaps empty
+Interval Hull(Interval a, Interval b);  ///< the smallest interval that holds both; of non-empty intervals
 Interval Abs(Interval a);
 Interval Sqr(Interval a);
 Interval Pow(Interval a, int n);  ///< n >= 1
@@ -52,11 +54,12 @@ Interval Tan(Interval a);
 Interval Asin(Interval a);
 Interval Acos(Interval a);
 Interval Atan(Interval a);
+/// Encloses the angle of each point (x, y), in [-pi, pi]; at the origin it is any of these.
 Interval Atan2(Interval y, Interval x);
 Interval Exp(Interval a);
 Interval Log(Interval a);
 
-/// `[0.1, 0.2]`, with digits enough to read the bounds back.
+/// Returns `[0.1, 0.2]`, with digits enough to read the bounds back.
 std::string ToString(Interval a);
 
 }  // namespace rondo::interval

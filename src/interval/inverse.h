@@ -7,6 +7,7 @@
 /// is kept, because the caller requires the result to exist.
 namespace rondo::interval {
 
+/// Contracts arguments lane by lane, for the instruction set `S` (HC4's backward step, Benhamou et al. 1999).
 template <typename S>
 struct Inverse : Operations<S> {
   using O = Operations<S>;
@@ -16,9 +17,10 @@ struct Inverse : Operations<S> {
   using typename O::M;
   using typename O::V;
 
-  static Iv Add(Iv z, Iv x, Iv y) { return O::Meet(x, O::Sub(z, y)); }  // x of x + y
+  /// Contracts x of x + y.
+  static Iv Add(Iv z, Iv x, Iv y) { return O::Meet(x, O::Sub(z, y)); }
 
-  /// x of x * y: by extended division, so y may contain 0.
+  /// Contracts x of x * y: by extended division, so y may contain 0.
   static Iv Mul(Iv z, Iv x, Iv y) {
     const M y_has_zero = O::Has(y, 0);
     const Iv plain = O::Meet(x, O::Quotient(z, O::Select(y_has_zero, O::Const(1, 1), y)));
@@ -38,11 +40,11 @@ struct Inverse : Operations<S> {
     return O::Select(y_has_zero, O::Select(z_has_zero, x, extended), plain);
   }
 
-  /// x and y of x / y. Division by zero can give anything.
+  /// Contract x and y of x / y. Division by zero can give anything, so nothing follows if 0 is in y.
   static Iv Dividend(Iv z, Iv x, Iv y) { return O::Select(O::Has(y, 0), x, O::Meet(x, O::Mul(z, y))); }
   static Iv Divisor(Iv z, Iv x, Iv y) { return O::Select(O::Has(y, 0), y, Mul(x, y, z)); }
 
-  /// x with |x| in m, where m has no negative numbers.
+  /// Contracts x of |x| in m, where m has no negative numbers.
   static Iv Symmetric(Iv m, Iv x) {
     const Iv right = O::Meet(x, m);
     const Iv left = O::Meet(x, O::Neg(m));
@@ -50,7 +52,7 @@ struct Inverse : Operations<S> {
   }
   static Iv Abs(Iv z, Iv x) { return Symmetric(O::Meet(z, O::Const(0, O::kInf)), x); }
   static Iv Sqr(Iv z, Iv x) { return Symmetric(O::Sqrt(z), x); }
-  /// x of x^n, n >= 2.
+  /// Contracts x of x^n, n >= 2.
   static Iv Pow(Iv z, Iv x, int n) {
     if (n == 2) return Sqr(z, x);
     if (n == 4) return Symmetric(O::Sqrt(O::Sqrt(z)), x);
@@ -62,7 +64,7 @@ struct Inverse : Operations<S> {
     const V hi = S::Select(S::Lt(z.hi, C(0)), upper.nl, upper.hi);
     return O::Meet(x, {nl, hi});
   }
-  /// An enclosure of the n-th roots of m >= 0: a guess, checked by its powers.
+  /// Encloses the n-th roots of m >= 0: a guess, checked by its powers.
   static Iv Root(Iv m, int n) {
     const V exponent = C(n);
     const V guess_lo = E::PerLane(O::Lo(m), exponent, [](double v, double k) { return std::pow(v, 1 / k); });
@@ -80,7 +82,7 @@ struct Inverse : Operations<S> {
     return O::Select(S::Lt(z.hi, C(0)), O::Empty(), r);
   }
 
-  /// x of min(x, y).
+  /// Contracts x of min(x, y).
   static Iv Min(Iv z, Iv x, Iv y) {
     Iv r = {S::Min(x.nl, z.nl), x.hi};  // x >= min >= z.lo
     // If y is above z, x is the minimum.
@@ -106,7 +108,7 @@ struct Inverse : Operations<S> {
     return O::Meet(x, {nl, hi});
   }
 
-  /// The hull of the part of x in the union over integers k of branch + period * k.
+  /// Returns the hull of the part of x in the union over integers k of branch + period * k.
   static Iv Periodic(Iv branch, Iv x, double period) {
     const V slack = S::Add(C(0x1p-46), S::Mul(O::Mag(x), C(0x1p-48)));
     // The first copy that ends at or after x.lo, the last that begins at or before x.hi.
@@ -120,7 +122,7 @@ struct Inverse : Operations<S> {
     const V hi = S::Add(S::Add(branch.hi, S::Mul(last, C(period))), slack);
     return {S::Min(x.nl, S::Neg(lo)), S::Min(x.hi, hi)};
   }
-  /// x of sin x. z not meeting [-1, 1]: nothing.
+  /// Contracts x of sin x; empty if z does not meet [-1, 1].
   static Iv Sin(Iv z, Iv x) {
     const Iv a = O::Asin(z);
     const Iv b = O::Sub(O::Const(E::kPi, 0x1.921fb54442d19p+1), a);
@@ -130,6 +132,7 @@ struct Inverse : Operations<S> {
     const Iv a = O::Acos(z);
     return Wave(z, x, a, O::Neg(a));
   }
+  /// Contracts x to the copies of the branches a and b, a full turn apart: what sine and cosine share.
   static Iv Wave(Iv z, Iv x, Iv a, Iv b) {
     const double turn = 2 * E::kPi;
     const Iv p = Periodic(a, x, turn);

@@ -8,6 +8,7 @@
 /// widened afterwards.
 namespace rondo::interval::avx2 {
 
+/// Is the instruction set as `Widened` expects it: arithmetic, comparisons and selection, lane by lane.
 struct Isa {
   static constexpr int kLanes = 8;
   struct V {

@@ -7,6 +7,8 @@
 /// Internal to `interval`: eight doubles in one AVX-512 register; every operation carries its rounding.
 namespace rondo::interval::avx512 {
 
+/// Is the instruction set as `Operations` expects it: `AddUp`, `MulUp`, `DivUp` and `SqrtUp` round upwards,
+/// `SqrtDown` rounds downwards. A product or quotient that is NaN (0 * inf, inf / inf) is 0.
 struct Isa {
   static constexpr int kLanes = 8;
   using V = __m512d;

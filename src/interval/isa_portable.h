@@ -7,6 +7,8 @@
 /// afterwards.
 namespace rondo::interval::portable {
 
+/// Is the instruction set as `Widened` expects it, for any machine: arithmetic, comparisons and selection on
+/// `N` doubles, lane by lane.
 template <int N>
 struct Isa {
   static constexpr int kLanes = N;

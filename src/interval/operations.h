@@ -10,6 +10,8 @@
 /// does. Division is total, as in SMT-LIB: a quotient by zero is some number, so it can be any.
 namespace rondo::interval {
 
+/// Encloses images lane by lane, for an instruction set `S` whose `AddUp`, `MulUp`, `DivUp` and `SqrtUp`
+/// never return less than the exact result.
 template <typename S>
 struct Operations {
   using V = typename S::V;
@@ -32,7 +34,7 @@ struct Operations {
 
   static Iv Meet(Iv a, Iv b) { return {S::Min(a.nl, b.nl), S::Min(a.hi, b.hi)}; }
   static Iv Hull(Iv a, Iv b) { return {S::Max(a.nl, b.nl), S::Max(a.hi, b.hi)}; }
-  /// The hull of two intervals of which either may be empty.
+  /// Returns the hull of two intervals of which either may be empty.
   static Iv HullOfParts(Iv a, Iv b) { return Select(IsEmpty(a), b, Select(IsEmpty(b), a, Hull(a, b))); }
   static Iv Neg(Iv a) { return {a.hi, a.nl}; }
   static Iv Add(Iv a, Iv b) { return {S::AddUp(a.nl, b.nl), S::AddUp(a.hi, b.hi)}; }
@@ -46,7 +48,7 @@ struct Operations {
     return {Max4(S::MulUp(a.nl, bl), S::MulUp(a.nl, b.hi), S::MulUp(mah, bl), S::MulUp(mah, b.hi)),
             Max4(S::MulUp(al, bl), S::MulUp(al, b.hi), S::MulUp(a.hi, bl), S::MulUp(a.hi, b.hi))};
   }
-  /// For 0 not in b.
+  /// Encloses a / b, for 0 not in b.
   static Iv Quotient(Iv a, Iv b) {
     const V al = Lo(a);
     const V mah = S::Neg(a.hi);
@@ -56,7 +58,9 @@ struct Operations {
   }
   static Iv Div(Iv a, Iv b) { return Select(Has(b, 0), Whole(), Quotient(a, b)); }
 
+  /// Returns the largest magnitude of a member.
   static V Mag(Iv a) { return S::Max(S::Abs(a.nl), S::Abs(a.hi)); }
+  /// Returns the least magnitude of a member.
   static V Mig(Iv a) { return S::Max(C(0), S::Max(S::Neg(a.nl), S::Neg(a.hi))); }
   static Iv Abs(Iv a) { return {S::Neg(Mig(a)), Mag(a)}; }
   static Iv Sqr(Iv a) {
@@ -75,7 +79,7 @@ struct Operations {
     for (int i = 1; i < n; ++i) r = S::MulUp(r, x);
     return r;
   }
-  /// x^n for n >= 1.
+  /// Encloses x^n, n >= 1.
   static Iv Pow(Iv a, int n) {
     if (n == 1) return a;
     const Iv magnitude = {PowNegUp(Mig(a), n), PowUp(Mag(a), n)};
@@ -96,10 +100,11 @@ struct Operations {
   static Iv Min(Iv a, Iv b) { return {S::Max(a.nl, b.nl), S::Min(a.hi, b.hi)}; }
   static Iv Max(Iv a, Iv b) { return {S::Min(a.nl, b.nl), S::Max(a.hi, b.hi)}; }
 
+  /// Encloses what is as near to the value as the error says.
   static Iv Around(typename E::Approx a) {
     return {S::Add(a.error, S::Neg(a.value)), S::Add(a.error, a.value)};
   }
-  /// Does [lo, hi] contain shift + period * k for an integer k? Says yes when in doubt.
+  /// Reports whether [lo, hi] contains (shift + k) / per_period for an integer k. Says yes when in doubt.
   static M Crosses(Iv a, double per_period, double shift) {
     const V lo = S::Sub(S::Mul(Lo(a), C(per_period)), C(shift));
     const V hi = S::Sub(S::Mul(a.hi, C(per_period)), C(shift));
@@ -128,6 +133,7 @@ struct Operations {
   }
   static Iv Sin(Iv a) { return SinOrCos(a, Wave::kSine); }
   static Iv Cos(Iv a) { return SinOrCos(a, Wave::kCosine); }
+  /// Encloses the tangent at a point, as a quotient of sine and cosine.
   static Iv TanAt(V x) {
     typename E::Approx sine, cosine;
     E::SinCos(x, sine, cosine);
@@ -139,6 +145,7 @@ struct Operations {
     const V hi = S::Select(pole, C(0), a.hi);
     return Select(pole, Whole(), Hull(TanAt(lo), TanAt(hi)));
   }
+  /// Encloses the image under an increasing function, from its values at both ends.
   static Iv Monotone(typename E::Approx at_lo, typename E::Approx at_hi) {
     return {Around(at_lo).nl, Around(at_hi).hi};
   }
@@ -180,7 +187,7 @@ struct Operations {
     r = Select(S::Lt(x, C(0)), Sub(pi, r), r);
     return Select(S::Lt(y, C(0)), Neg(r), r);
   }
-  /// The angle in (-pi, pi] of the point (x, y); at the origin it is some number in [-pi, pi].
+  /// Encloses the angle in (-pi, pi] of the point (x, y); at the origin it is some number in [-pi, pi].
   static Iv Atan2(Iv y, Iv x) {
     const double pi_up = 0x1.921fb54442d19p+1;
     const V yl = Lo(y);

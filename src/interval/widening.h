@@ -13,6 +13,7 @@ struct Widened : Base {
   using V = typename Base::V;
   using M = typename Base::M;
 
+  /// Returns at least the next double above x.
   static V Up(V x) {
     // An overflow to -infinity stands for something at least as large as the smallest double.
     x = Base::Max(Base::Set(-std::numeric_limits<double>::max()), x);

@@ -6,15 +6,17 @@
 #include "base/stop.h"
 #include "workspace/session.h"
 
+/// Makes recorded runs again.
 namespace rondo::runs {
 
-/// Whether a recorded run was made again.
+/// Tells whether a recorded run was made again.
 struct Replayed {
   bool same = false;
-  std::string text;  ///< says so, or where it differs
+  std::string text;  ///< says that it was, or where it differs first
   bool interrupted = false;
 };
 
+/// Says who is told how far a replay is, and how it is stopped.
 struct ReplayOptions {
   std::function<void(double time, double end)> progress;  ///< of simulations; seconds
   base::StopToken stop;

@@ -5,16 +5,17 @@
 #include "sim/simulation.h"
 #include "workspace/session.h"
 
+/// Finds the files of simulations.
 namespace rondo::runs {
 
-/// The files of one simulation.
+/// Holds the files of one simulation.
 struct SimulationFiles {
   std::string program;
   std::string spec;  ///< empty: beside the program, if there is one
   std::string fleet;
 };
 
-/// `NAME`, `NAME.koord`, or `NAME.toml` stand for all three.
+/// Returns the files of a simulation: `NAME`, `NAME.koord`, or `NAME.toml` stand for all three.
 SimulationFiles FindSimulationFiles(const std::string& file, const std::string& spec,
                                     const std::string& fleet);
 

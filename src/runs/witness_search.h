@@ -9,16 +9,18 @@
 #include "koord/prove/prove.h"
 #include "runs/exploration.h"
 
+/// Looks for runs that violate what the prover could not prove.
 namespace rondo::runs {
 
-/// What a bounded search found out about one invariant.
+/// Holds what a bounded search found out about one invariant.
 struct Reached {
   std::string invariant;
   std::string text;  ///< one line for people
-  std::string run;   ///< the file of the run, if there is one
+  std::string run;   ///< the file that the run was written to, if there is one
   bool found = false;
 };
 
+/// Says what was asked of the prover, and how far to search.
 struct ReachRequest {
   std::optional<uint32_t> rounds;  ///< none: few, and only for what could not be decided
   std::optional<size_t> robots;    ///< if their number was fixed

@@ -8,23 +8,27 @@
 #include "koord/semantics/team.h"
 #include "sim/simulation.h"
 
+/// Watches simulations.
 namespace rondo::sim {
 
 /// Checks a run against its specification while it happens: invariants, assumptions about ports and
 /// controllers, summaries.
 class Monitor {
  public:
+  /// Receives each violation, every time that it is seen; `first`: it is the first time for that robot.
   using Report = std::function<void(const Violation&, bool first)>;
   Monitor(koord::semantics::Team& team, diag::Diagnostics& diagnostics, Report report);
 
-  /// The initial state: `assume initially`, and everything that always holds.
+  /// Checks the initial state, at t = 0: general assumptions, `assume initially`, what always holds of ports,
+  /// and invariants.
   void Initially(std::span<koord::semantics::Word> state);
-  /// The end of a program transition.
+  /// Checks the invariants at the end of a program transition; `time` in seconds.
   void Settled(double time, std::span<koord::semantics::Word> state);
-  /// A moment of the environment's turn that began with `settled`.
+  /// Checks a moment of the environment's turn that began with `settled`: controller assumptions and
+  /// invariants.
   void During(double time, std::span<koord::semantics::Word> state,
               std::span<const koord::semantics::Word> settled);
-  /// A call returned what a summary excludes.
+  /// Notes the first call since the last check that returned what a summary excludes, if there was one.
   void Summary(double time);
 
   const std::vector<Violation>& violations() const { return violations_; }

@@ -9,19 +9,21 @@
 #include "sim/functions/grid_map.h"
 #include "trace/ros.h"
 
+/// Records simulations as traces.
 namespace rondo::sim {
 
 /// Writes what happens in a simulation to a trace; does nothing without one.
 ///
 /// Topics: `/rondo/run` (once, JSON: everything that a replay needs), `/rondo/round` and `/rondo/event`
-/// (JSON),
-/// `/ROBOT/pose` (PoseStamped), `/ROBOT/path` (Path), `/ROBOT/scan` (LaserScan), `/world` (MarkerArray),
-/// `/map` (OccupancyGrid).
+/// (JSON), `/ROBOT/pose` (PoseStamped), `/ROBOT/path` (Path), `/ROBOT/scan` (LaserScan), `/world`
+/// (MarkerArray), `/map` (OccupancyGrid).
 class Recorder {
  public:
   Recorder(trace::Writer* writer, const Fleet& fleet);
 
+  /// Reports whether there is a trace, so that others can save the work for one.
   bool on() const { return writer_ != nullptr; }
+  /// Writes a message of each topic; times are seconds since the beginning of the run.
   void Run(const nlohmann::json& run);
   void World(const Fleet& fleet);
   void Round(double time, const nlohmann::json& round);
@@ -31,6 +33,7 @@ class Recorder {
   void Scan(double time, size_t robot, const Rays& rays, double yaw, double period);
   void Map(double time, const GridMap& map);
 
+  /// Converts seconds to the unit of traces.
   static uint64_t Nanoseconds(double time);
 
  private:

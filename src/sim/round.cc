@@ -123,13 +123,13 @@ void Run::After(double t) {
   bool stopped = true;
   for (size_t r = 0; r < bodies_.size(); ++r)
     stopped = stopped && state_[team_->layout().block(r) + team_->layout().stopped()] != 0;
-  if (stopped && fleet_.until != "mapped") report_.ended = Ending::kStopped;
+  if (stopped && fleet_.until != Until::kMapped) report_.ended = Ending::kStopped;
   const auto map = SharedMap();
   if (map && map->cells != last_map_) {
     last_map_ = map->cells;
     recorder_.Map(t, *map);
   }
-  if (fleet_.until == "mapped" && map) {
+  if (fleet_.until == Until::kMapped && map) {
     Point nowhere{};
     const bool more = std::any_of(bodies_.begin(), bodies_.end(), [&](const auto& body) {
       return Frontier(*map, body->position(), nowhere);

@@ -15,10 +15,12 @@
 #include "sim/recorder.h"
 #include "sim/simulation.h"
 
+/// Carries out simulations; only the sources of the simulator include it.
 namespace rondo::sim {
 
-/// One simulation, from the fleet to the report. Rounds in virtual time: a program transition, then the environment's
-/// turn of `delta` seconds, in controller periods.
+/// Carries out one simulation, from the fleet to the report, in virtual time. In each round the program
+/// transition comes first, then the environment's turn of `delta` seconds, in controller periods of `step`
+/// seconds.
 class Run {
  public:
   Run(const koord::Model& model, const Fleet& fleet, const SimulationOptions& options, trace::Writer* trace,
@@ -31,6 +33,7 @@ class Run {
         functions_(model, fleet, options.seed),
         random_(options.seed) {}
 
+  /// Runs the simulation to its end; to be called once.
   SimulationReport Go();
 
  private:

@@ -44,12 +44,12 @@ bool Run::MakeTeam() {
                           fmt::format("the program has no parameter `{}`", name));
       continue;
     }
-    // Parameters have no lists that need the team's heap but its own: numbers, points, truth values.
+    const lang::TypeId type = model_.variables[static_cast<size_t>(v)].type;
     koord::semantics::Heap scratch;
-    const auto words = koord::semantics::FromJson(model_.types, scratch,
-                                                  model_.variables[static_cast<size_t>(v)].type, given.value);
-    if (words) {
-      options.params[static_cast<size_t>(v)] = *words;
+    if (koord::semantics::FromJson(model_.types, scratch, type, given.value)) {
+      options.made_params[static_cast<size_t>(v)] = [this, type, value = &given.value](Heap& heap) {
+        return *koord::semantics::FromJson(model_.types, heap, type, *value);
+      };
     } else {
       diagnostics_.Report(Kind::kFleetValue, given.span,
                           fmt::format("`{}` must be a `{}`", name,

@@ -15,7 +15,7 @@ SimulationReport Run::Go() {
       std::any_of(model_.variables.begin(), model_.variables.end(), [&](const koord::Variable& v) {
         return v.kind == koord::VariableKind::kAllwrite && model_.types.Is(v.type, lang::TypeKind::kOpaque);
       });
-  if (fleet_.until == "mapped" && !maps)
+  if (fleet_.until == Until::kMapped && !maps)
     diagnostics_.Report(Kind::kFleetValue, fleet_.until_span, "the program draws no shared map");
   if (!MakeTeam() || diagnostics_.has_errors() || !MakeRobots() || !Start()) return std::move(report_);
   report_.ran = true;

@@ -12,32 +12,34 @@
 #include "sim/fleet/fleet.h"
 #include "trace/writer.h"
 
+/// Simulates Koord programs on fleets of robots.
 namespace rondo::sim {
 
+/// Says how a simulation runs, beside what the fleet says.
 struct SimulationOptions {
   uint64_t seed = 1;
   double duration = 0;  ///< seconds; 0: as the fleet says
   unsigned jobs = 0;    ///< threads; 0: one for each core. The result does not depend on it
-  bool fail_on_collision = false;
-  /// What the trace keeps about where the run came from: texts of program, specification and fleet.
+  /// Holds what the trace keeps about where the run came from: texts of program, specification and fleet.
   std::string program, spec, fleet, program_name;
+  /// Receives, after each round, how far the run is, in seconds.
   std::function<void(double time, double end)> progress;
   base::StopToken stop;
 };
 
-/// Why a simulation ended.
+/// Tells why a simulation ended.
 enum class Ending : uint8_t {
   kTime,         ///< its time was over
   kStopped,      ///< every robot stopped
   kMapped,       ///< the map is complete
   kInterrupted,  ///< somebody asked it to stop
-  kFailed,       ///< an operation of the program has no value
+  kFailed,       ///< an operation of the program has no value, or the state of a body is not finite
 };
 
 /// Returns `time`, `stopped`, `mapped`, `interrupted` or `failed`, as traces and JSON have it.
 std::string_view Name(Ending ending);
 
-/// Something that must not happen, and did.
+/// Tells something that must not happen, and did, how often it was seen, and when first.
 struct Violation {
   std::string what;  ///< `assumption Motion.stays_in_box`, `invariant geofence`, `summary merge`
   int robot = -1;
@@ -45,30 +47,33 @@ struct Violation {
   uint64_t count = 0;
 };
 
+/// Holds what happened in a simulation.
 struct SimulationReport {
-  bool ran = false;  ///< false: the program cannot be simulated; reported
+  bool ran = false;  ///< false: the program cannot be simulated, which was reported
   double time = 0;   ///< seconds simulated
   uint64_t rounds = 0;
   uint64_t events = 0;
   double observed_every = 0;  ///< seconds between looks at contacts and distances
-  uint64_t collisions = 0;    ///< beginnings of contacts
+  uint64_t collisions = 0;    ///< how often a contact began
   double first_collision = -1;
   std::string first_pair;
-  /// Metres between surfaces; infinite if there is nothing, or (beyond 200 robots) if it is not measured.
+  /// Gives the least distances of the run, in metres between surfaces; infinite if there is nothing, or
+  /// (beyond 200 robots) if it is not measured.
   double least_between_robots = std::numeric_limits<double>::infinity();
   double least_to_obstacles = std::numeric_limits<double>::infinity();
   std::vector<Violation> violations;
   std::vector<std::string> unchecked;  ///< parts of the specification that runs are not checked against
   Ending ended = Ending::kTime;
   uint64_t plans = 0;
-  uint64_t known_cells = 0;  ///< of the shared map, if there is one
+  uint64_t known_cells = 0;  ///< of the shared map, if there is one: cells that are not unknown
   uint64_t wrong_cells = 0;
   uint64_t reachable_unknown = 0;
   std::vector<std::string> log;  ///< what robots wrote to streams: the last lines
 };
 
 /// Runs a Koord program on a simulated fleet, in virtual time. Everything that happens is written to the
-/// trace, if there is one. The same program, fleet and seed give the same run, byte by byte.
+/// trace, if there is one. The same program, fleet and seed give the same run, byte by byte, whatever the
+/// number of threads.
 SimulationReport Simulate(const koord::Model& model, const Fleet& fleet, const SimulationOptions& options,
                           trace::Writer* trace, diag::Diagnostics& diagnostics);
 

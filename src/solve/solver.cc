@@ -14,4 +14,28 @@ std::string ToSmtLib(const Query& query, expr::SmtFunctions functions) {
   return expr::ToSmtLib(*query.arena, assertions, functions);
 }
 
+AnswerKind KindOf(const Answer& answer) {
+  if (std::holds_alternative<Unsat>(answer)) return AnswerKind::kUnsat;
+  if (std::holds_alternative<Sat>(answer)) return AnswerKind::kSat;
+  return std::holds_alternative<DeltaSat>(answer) ? AnswerKind::kDeltaSat : AnswerKind::kUnknown;
+}
+
+std::string_view Name(AnswerKind kind) {
+  switch (kind) {
+    case AnswerKind::kUnsat:
+      return "unsat";
+    case AnswerKind::kSat:
+      return "sat";
+    case AnswerKind::kDeltaSat:
+      return "delta-sat";
+    case AnswerKind::kUnknown:
+      return "unknown";
+  }
+  return "";
+}
+
+bool IsDefinite(const Answer& answer) {
+  return std::holds_alternative<Sat>(answer) || std::holds_alternative<Unsat>(answer);
+}
+
 }  // namespace rondo::solve

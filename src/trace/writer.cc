@@ -46,7 +46,7 @@ base::Result<Writer> Writer::Open(const std::string& path) {
   writer.Write(kMagic);
   std::string header;
   PutText(header, "");
-  PutText(header, "rondo 0.1.0");
+  PutText(header, "rondo");
   std::string record;
   Record(record, kHeader, header);
   writer.Write(record);

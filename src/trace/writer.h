@@ -9,21 +9,25 @@
 
 #include "base/result.h"
 
+/// Records of runs, as files that the usual tools of robotics can open.
 namespace rondo::trace {
 
-/// How the messages of a channel are written.
+/// Says how the messages of a channel are written. Its texts must outlive the writer.
 struct Schema {
-  std::string_view name;      ///< `geometry_msgs/msg/PoseStamped`
-  std::string_view encoding;  ///< of `text`: `ros2msg`, `jsonschema`
-  std::string_view text;
+  std::string_view name;      ///< such as `geometry_msgs/msg/PoseStamped`
+  std::string_view encoding;  ///< of `text`: `ros2msg` or `jsonschema`
+  std::string_view text;      ///< the definition itself
 };
 
-/// Writes a record of a run as MCAP (mcap.dev, version 0): chunks without compression, an index and
+/// Writes a record of a run as MCAP (MCAP specification, version 0): chunks without compression, an index and
 /// statistics behind them, so that the usual tools can read and seek. The same calls give the same bytes.
 ///
-/// The file is written beside its name and gets it in `Finish`; without that, nothing of it stays.
+/// The file is written beside its name, with `.partial` behind it, and gets its name in `Finish`; without
+/// that, nothing of it stays.
 class Writer {
  public:
+  /// Begins a file, and makes the folders that it lies in. @error if it cannot be opened, or is no regular
+  /// file.
   static base::Result<Writer> Open(const std::string& path);
   Writer(Writer&& other) noexcept;
   Writer& operator=(Writer&&) = delete;
@@ -31,11 +35,12 @@ class Writer {
   Writer& operator=(const Writer&) = delete;
   ~Writer();
 
-  /// The number of a channel. `encoding`: of the messages, `cdr` or `json`.
+  /// Returns the number of a channel. `encoding`: of the messages, `cdr` or `json`.
   uint16_t Channel(const std::string& topic, const Schema& schema, const std::string& encoding);
-  /// `time`: nanoseconds since the start of the run; must not decrease.
+  /// Adds a message. `time`: nanoseconds since the start of the run; must not decrease. What cannot be
+  /// written is told by `Finish`.
   void Message(uint16_t channel, uint64_t time, std::string_view bytes);
-  /// @error if anything could not be written.
+  /// Completes the file and gives it its name. @error if anything could not be written.
   base::Result<bool> Finish();
   uint64_t messages() const { return messages_; }
 

@@ -6,31 +6,33 @@
 #include <string_view>
 #include <vector>
 
+/// What verdicts rest on: assumptions that are used, proved elsewhere, or not needed.
 namespace rondo::verdict {
 
-/// What decided a claim.
+/// Names what decided a claim.
 enum class Engine : uint8_t {
   kInduction,     ///< invariants of Koord programs, by an SMT solver
   kObligations,   ///< choreographies, by separation and interval arithmetic
   kReachability,  ///< contracts of motions and ports, by tubes
 };
+/// Returns the word that people and JSON see: `induction`, `obligations`, `reachability`.
 std::string_view Name(Engine engine);
 
-/// An assumption that another engine has proved.
+/// Is an assumption that another engine has proved.
 struct Discharged {
-  std::string claim;
+  std::string claim;  ///< as it stands in the specification
   Engine by = Engine::kReachability;
   std::vector<std::string> limits;  ///< of which model, for which starts, under which assumptions of its own
 };
 
-/// What a verdict rests on. Every line of it is shown beside the verdict.
+/// Is what a verdict rests on. Every line of it is shown beside the verdict.
 struct Basis {
   std::vector<std::string> assumed;  ///< used by some proof, and not proved
   std::vector<Discharged> proved;    ///< used, and proved by another engine
   std::vector<std::string> unused;   ///< stated, but no proof needed them
 };
 
-/// {assumed: [...], proved: [{claim, by, limits}], unused: [...]}.
+/// Returns {assumed: [...], proved: [{claim, by, limits}], unused: [...]}.
 nlohmann::json ToJson(const Basis& basis);
 
 }  // namespace rondo::verdict

@@ -7,7 +7,7 @@
 /// says of it by its exit status.
 namespace rondo::verdict {
 
-/// What became of a claim: an invariant, an obligation, a contract, a whole file. From best to worst.
+/// Says what became of a claim: an invariant, an obligation, a contract, a whole file. From best to worst.
 enum class Verdict : uint8_t {
   kProved,        ///< it holds
   kConditional,   ///< it holds if something holds that is not proved
@@ -20,10 +20,11 @@ enum class Verdict : uint8_t {
 /// Returns the word that people and JSON see: `proved`, `conditional`, `unknown`, `not inductive`, `refuted`.
 std::string_view Name(Verdict verdict);
 
-/// Returns what the two together are.
+/// Returns the worse of two verdicts: that of a conjunction of claims, since verdicts are ordered from best
+/// to worst.
 constexpr Verdict Worse(Verdict a, Verdict b) { return a < b ? b : a; }
 
-/// Why a search ended without an answer.
+/// Says why a search ended without an answer.
 enum class Shortfall : uint8_t {
   kNone,         ///< it has an answer
   kMethod,       ///< its method decides no more, however long it takes
@@ -31,7 +32,7 @@ enum class Shortfall : uint8_t {
   kInterrupted,  ///< somebody asked it to stop
 };
 
-/// The exit statuses of the process, the same for every verb.
+/// Lists the exit statuses of the process, the same for every verb.
 enum class ExitStatus : uint8_t {
   kEstablished = 0,  ///< everything that was asked for is established
   kRejected = 1,     ///< the input is wrong, or a property is refuted or not inductive
@@ -43,8 +44,8 @@ enum class ExitStatus : uint8_t {
 /// Returns the status of a process that was asked for one claim, and has this verdict.
 ExitStatus StatusOf(Verdict verdict);
 
-/// Returns the status of a process that did both. From best to worst: established, unknown, rejected, usage,
-/// bug.
+/// Returns the status of a process that did both things. From best to worst: established, unknown, rejected,
+/// usage, bug.
 ExitStatus Worse(ExitStatus a, ExitStatus b);
 
 }  // namespace rondo::verdict

@@ -2,9 +2,10 @@
 
 #include <string>
 
+/// Names files.
 namespace rondo::workspace {
 
-/// Returns the text as the name of a file: letters, digits, `-` and `_`.
+/// Returns the text as the name of a file: all but letters, digits, `-` and `_` become `_`.
 std::string FileName(std::string text);
 
 /// Returns the absolute path of a file; an empty one for an empty one.

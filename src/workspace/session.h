@@ -5,16 +5,16 @@
 
 #include "diag/diagnostic.h"
 
-/// Files, loaded and checked once. Prints nothing: what is wrong is a diagnostic.
+/// Loads and checks files, each once for one request. Prints nothing: what is wrong is a diagnostic.
 namespace rondo::workspace {
 
-/// What one request reads, and everything that was said about it.
+/// Holds what one request reads, and everything that was said about it.
 struct Session {
   diag::SourceSet sources;
   diag::Diagnostics diagnostics;
 };
 
-/// Adds a file to the sources. Reports one that cannot be read, and returns nothing.
+/// Adds a file to the sources. Returns nothing, after a report, if it cannot be read.
 std::optional<diag::FileId> ReadSource(const std::string& path, Session& session);
 
 }  // namespace rondo::workspace

@@ -33,7 +33,11 @@ def check(name, good, detail=""):
 
 LINEFORM = "examples/koord/lineform.koord"
 
-for args in (["--help"], ["check", "--help"], ["prove", "--help"], ["fmt", "--help"], ["explain", "--help"], ["ast", "--help"], ["solve", "--help"], ["certify", "--help"], ["project", "--help"], ["infer", "regions", "--help"], ["explore", "--help"], ["simulate", "--help"], ["replay", "--help"], ["plot", "--help"], ["reach", "--help"]):
+# Every verb has a help with an example, and says so in the list of verbs.
+help_text = rondo("--help").stdout
+VERBS = re.findall(r"^  ([a-z]+) +\S", help_text.split("Subcommands:")[1], re.MULTILINE)
+check("verbs", {"check", "prove", "explore", "reach", "replay"} <= set(VERBS), help_text)
+for args in (["--help"], ["infer", "regions", "--help"], *([verb, "--help"] for verb in VERBS if verb != "infer")):
     done = rondo(*args)
     check(f"{args}", done.returncode == 0 and "example" in done.stdout, done.stdout + done.stderr)
 for args in ([], ["nonsense"], ["prove"], ["prove", LINEFORM, "--robots", "0"], ["explain", "koord-nonsense"]):

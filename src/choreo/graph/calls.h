@@ -6,16 +6,19 @@
 #include "choreo/graph/declarations.h"
 #include "choreo/graph/graph.h"
 
+/// Resolves calls of motions.
 namespace rondo::choreo {
 
-/// Finds the motions that calls mean, and gives them their arguments.
+/// Finds the motions that calls mean, and gives them their arguments. Equal calls are one instance of the
+/// graph.
 class Calls {
  public:
-  /// `loose`: names of motions may differ in case and may begin with `m_`.
+  /// Takes `loose` names, as processes of the original interpreter have them: names of motions may differ in
+  /// case and may begin with `m_`.
   Calls(Graph& graph, Declarations& declarations, bool loose = false);
 
-  /// The index of the instance; nothing after a report. Arguments are evaluated in `scope`. Motions of one
-  /// name differ in how many arguments they take.
+  /// Returns the index of the instance in the graph; nothing after a report. Arguments are evaluated in
+  /// `scope`. Motions of one name differ in how many arguments they take.
   std::optional<size_t> Resolve(RobotId robot, const MotionCall& call, const robot::Scope& scope);
 
  private:

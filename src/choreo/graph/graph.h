@@ -11,21 +11,22 @@
 #include "expr/rational.h"
 #include "robot/model/world.h"
 
+/// Represents choreographies as graphs, to which both ways of writing them lead.
 namespace rondo::choreo {
 
 using RobotId = base::Id<struct RobotTag>;
 using NodeId = base::Id<struct NodeTag>;
 using Scope = std::set<RobotId>;
 
-/// How long a motion takes: [least, most] seconds, without `most` for ever. An interruptible motion may be
-/// ended at any time in between by a message.
+/// Holds how long a motion takes: [least, most] seconds, without `most` for ever. An interruptible motion may
+/// be ended at any time in between by a message.
 struct Duration {
   expr::Rational least;
   std::optional<expr::Rational> most;
   bool interruptible = true;
 };
 
-/// A motion of one robot with its arguments. Equal ones are one: compare them by index.
+/// Holds a motion of one robot with its arguments. Equal ones are one: compare them by index.
 struct Instance {
   RobotId robot;
   const MotionDef* motion = nullptr;
@@ -36,7 +37,7 @@ struct Instance {
   std::string text;  ///< as it was written first: `Move(1 m)`
 };
 
-/// What one robot does in a joint motion.
+/// Says what one robot does in a joint motion: an instance of the graph.
 struct Part {
   RobotId robot;
   diag::Span span;
@@ -44,17 +45,19 @@ struct Part {
   Duration duration;
 };
 
-/// What is known in one thread of a fork: the space that is its own, what it may assume of the other threads,
-/// and what it promises them.
+/// Holds what is known in one thread of a fork: the space that is its own, what it may assume of the other
+/// threads, and what it promises them.
 struct ThreadFacts {
   diag::Span span;
-  std::optional<expr::TermId> region;  ///< over the point of the world
+  std::optional<expr::TermId> region;  ///< a formula over the point of the world (metres, frame W)
   expr::TermId assume, guarantee;
   std::string region_text{};  ///< as source
 };
 
+/// Names what happens at a node.
 enum class NodeKind : uint8_t { kMessage, kMotion, kChoice, kMerge, kFork, kJoin, kEnd };
 
+/// Represents one step of a choreography. Which fields are used depends on its kind.
 struct Node {
   NodeKind kind = NodeKind::kEnd;
   diag::Span span;
@@ -75,12 +78,12 @@ struct Node {
   NodeId join;  ///< kFork
 };
 
-/// A choreography, whatever it was written in: messages, joint motions, choices, and threads of robots that
-/// do not meet. Refers to the module that it was made from.
+/// Represents a choreography, whatever it was written in: messages, joint motions, choices, and threads of
+/// robots that do not meet. Refers to the module that it was made from.
 struct Graph {
   const ChoreographyDef* source = nullptr;
   std::shared_ptr<const robot::World> world;
-  std::vector<Name> robots;  ///< as `world->bodies`
+  std::vector<Name> robots;  ///< in the order of `world->bodies`: RobotId is the index
   std::vector<Instance> instances;
   expr::TermId initially;
   std::vector<Node> nodes;
@@ -91,8 +94,9 @@ struct Graph {
   Node& operator[](NodeId id) { return nodes[id.index()]; }
   const std::string& NameOf(RobotId id) const { return robots[id.index()].text; }
   const robot::Body& BodyOf(RobotId id) const { return world->bodies[id.index()]; }
+  /// Returns the robot of this name; nothing if there is none.
   std::optional<RobotId> Find(std::string_view robot) const;
-  /// "`a`, `b` and `c`"
+  /// Returns the names of robots as messages list them: "`a`, `b` and `c`".
   std::string Names(const Scope& scope) const;
 };
 

@@ -5,15 +5,17 @@
 
 #include "choreo/graph/calls.h"
 
+/// Shares what both ways of writing choreographies need to make their graphs.
 namespace rondo::choreo {
 
-/// Which robots a thread mentions, and which of them move in it.
+/// Tells which robots a thread mentions, and which of them move in it.
 struct ThreadRobots {
   Scope mentioned, moving;
 };
 
 /// Makes the nodes of a graph and checks what concerns one node alone: names, arguments, units, owners of
-/// guards, and which robot belongs to which thread (rule 1, scopes).
+/// guards, and which robot belongs to which thread (rule 1, scopes; docs/theory.md, "Choreographies"). A base
+/// of the classes that lower one way of writing each.
 class NodeBuilder {
  public:
   explicit NodeBuilder(Declarations& declarations)
@@ -26,26 +28,27 @@ class NodeBuilder {
   NodeBuilder& operator=(const NodeBuilder&) = delete;
 
  protected:
-  /// World, options, initial state. All robots, or nothing after a report.
+  /// Reads world, options and initial state. Returns all robots, or nothing after a report.
   std::optional<Scope> Begin(const ChoreographyDef& source);
-  /// The graph, unless an error was reported since the beginning.
+  /// Returns the graph, unless an error was reported since `Begin`.
   std::optional<Graph> Finish();
 
+  /// Puts a node into the graph. Its successors may be set later.
   NodeId Add(Node node);
   static Node Make(NodeKind kind, diag::Span span, const Scope& scope);
   Node MakeMessage(const Stmt& s, const Scope& scope);
   Node MakeMotion(const Stmt& s, const Scope& scope);
-  /// A fork without successors and without its join. `threads`: by branch.
+  /// Makes a fork without successors and without its join. `threads`: by branch.
   Node MakeFork(const Stmt& s, const std::vector<ThreadRobots>& threads, const Scope& scope);
-  /// The next alternative of a choice; an invalid guard: where the ones before do not hold.
+  /// Adds the next alternative to a choice. An invalid guard stands for "where the ones before do not hold".
   void AddGuard(ExprId guard, Node& choice);
-  /// Adds what one step mentions.
+  /// Adds the robots that one step mentions, and those that move in it.
   void Mentions(const Stmt& s, ThreadRobots& thread) const;
-  /// A robot in scope; else invalid, after a report.
+  /// Returns the robot of this name if it is in scope; else an invalid id, after a report.
   RobotId Robot(const Name& name, const Scope& scope);
-  /// Reports what a robot would have to know to evaluate this, but cannot.
+  /// Reports a variable that the robot would have to know to evaluate these terms, but cannot.
   void NeedKnown(const std::vector<expr::TermId>& terms, diag::Span span, RobotId robot);
-  /// The robots whose state an expression reads, and where.
+  /// Returns the robots whose state an expression reads, and where it does.
   std::map<RobotId, diag::Span> Owners(ExprId id) const;
 
   Declarations& declarations_;

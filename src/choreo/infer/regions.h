@@ -3,27 +3,29 @@
 #include "choreo/obligations/obligations.h"
 #include "choreo/prove/decide.h"
 
-/// Finds what people would otherwise have to write by hand.
+/// Finds the regions of threads that people would otherwise have to write by hand.
 namespace rondo::choreo {
 
-/// A region that was found for one thread of a fork.
+/// Holds a region that was found for one thread of a fork.
 struct FoundRegion {
   diag::Span span;     ///< of the thread
   std::string robots;  ///< "`cart` and `arm`"
   std::string text;    ///< as source: `z < 0.1 m and x < 0.5 m or z > 0.2 m`
 };
 
-/// Why there is no region for a thread.
+/// Says for which thread no region was found, and why.
 struct NoRegion {
   diag::Span span;
   std::string why;
 };
 
+/// Holds what came of looking for regions.
 struct Inference {
   std::vector<FoundRegion> found;
   std::vector<NoRegion> failed;
 };
 
+/// Limits the search for regions.
 struct InferOptions {
   solve::icp::Options engine;
   Limits limits;

@@ -9,25 +9,26 @@
 #include "choreo/process/typing.h"
 #include "robot/separation/meeting.h"
 
-/// What must hold so that a well-formed choreography can be trusted: formulas for a solver (Section 4 of the
-/// paper: compatibility of motions; [T-Motion], [AGComp], [T-Sess]). Time is continuous: `clock` ranges over
-/// the duration of a motion.
+/// States what must hold so that a well-formed choreography can be trusted: formulas for a solver (Section 4
+/// of the paper: compatibility of motions; [T-Motion], [AGComp], [T-Sess]). Time is continuous: `clock`
+/// ranges over the duration of a motion, in seconds.
 namespace rondo::choreo {
 
+/// Names what an obligation is about.
 enum class ObligationKind : uint8_t {
-  kHull,          ///< contains the body
+  kHull,          ///< the hull of a robot contains its body
   kInitial,       ///< bodies are apart, and stand nowhere in obstacles, when it begins
-  kPrecondition,  ///< of a motion
-  kAssumption,    ///< of a motion, from what the others of the step promise, all the time
-  kGuarantee,     ///< of a thread, all the time
-  kBody,          ///< within the footprint, all the time
-  kCollision,     ///< two robots of a step
-  kObstacle,      ///< a robot and an obstacle
+  kPrecondition,  ///< the precondition of a motion holds where it begins
+  kAssumption,    ///< what a motion assumes follows from what the others of the step promise, all the time
+  kGuarantee,     ///< what a thread guarantees holds all the time
+  kBody,          ///< the body stays within the footprint, all the time
+  kCollision,     ///< two robots of a step keep apart
+  kObstacle,      ///< a robot keeps apart from an obstacle
   kRegion,        ///< a robot keeps to the region of its thread
   kFork,          ///< regions of threads are disjoint, and within the region of their parent
   kThread,        ///< what a thread assumes follows from what the others guarantee
-  kTotalChoice,   ///< some guard holds
-  kMessage,       ///< the guard of a message, and what it carries
+  kTotalChoice,   ///< some guard of a choice holds
+  kMessage,       ///< the guard of a message holds, and it carries what it promises
   kContract,      ///< pre, during and post of a motion can hold
   kKeeping,       ///< the motions of a step can be kept at every moment, by continuous states
   kInterrupted,   ///< what a motion promises holds whenever a message may end it
@@ -36,12 +37,12 @@ enum class ObligationKind : uint8_t {
   kReached,       ///< it can happen that a motion begins; if not, nothing is said about it
 };
 
-/// Does an obligation of this kind have to hold? The others tell what a proof rests on.
+/// Reports whether an obligation of this kind has to hold. The others tell what a proof rests on.
 bool IsRequired(ObligationKind kind);
 
-/// What has to be possible in a step: from each start there is one continuous curve of the states that it
-/// moves, on which `during` holds at every moment and `post` at the end. Curves may begin beside the start,
-/// if it is no farther than a bridge.
+/// Holds what has to be possible in a step: from each start there is one continuous curve of the states that
+/// it moves, on which `during` holds at every moment and `post` at the end. Curves may begin beside the
+/// start, if it is no farther than a bridge (docs/theory.md, "Curves").
 struct Keeping {
   std::vector<expr::TermId> moving;  ///< states that the motions of the step modify
   std::vector<expr::TermId> before;  ///< for each of them: what it is when the step begins
@@ -58,8 +59,8 @@ struct Keeping {
   bool chooses = false;  ///< whose controller chooses when, and nobody else has to keep anything meanwhile
 };
 
-/// To show: `formula` has no solution together with `rest`; or, if `satisfiable`, that it has one; or, if
-/// there is a `keeping`, that (`formula` only names it).
+/// Holds what is to be shown: that `formula` has no solution together with `rest`; or, if `satisfiable`, that
+/// it has one; or, if there is a `keeping`, that (`formula` only names it).
 struct Obligation {
   ObligationKind kind = ObligationKind::kContract;
   diag::Span span;
@@ -67,42 +68,46 @@ struct Obligation {
   std::string failure;  ///< what is the matter if not: "the precondition of `cart: Move(1 m)` may not hold"
   bool satisfiable = false;
   expr::TermId formula;
-  /// What else is known, about other variables than `formula`: it matters only if it is contradictory.
+  /// Holds what else is known, about other variables than `formula`: it matters only if it is contradictory.
   expr::TermId rest;
   std::optional<robot::Meeting> meeting;  ///< what `formula` says, if it is about shapes
   std::optional<Keeping> keeping;
-  /// The motions, messages and choices that it is about: the first, and others of which the same was stated.
+  /// Lists the motions, messages and choices that it is about: the first, and others of which the same was
+  /// stated.
   std::vector<NodeId> nodes;
   std::vector<size_t> instances;  ///< the motions that it is about
-  /// About the way to where `during` begins: holds if kStart holds at the same nodes.
+  /// Says that it is about the way to where `during` begins: it holds if kStart holds at the same nodes.
   bool bridge = false;
 };
 
-/// The node that an obligation is about, if it is about one.
+/// Returns the first node that an obligation is about, if it is about one.
 inline NodeId NodeOf(const Obligation& o) { return o.nodes.empty() ? NodeId() : o.nodes.front(); }
 
-/// What cannot even be stated: a body or a region that is missing, assumptions that rest on each other.
+/// Names what cannot even be stated: a body or a region that is missing, assumptions that rest on each other.
 struct Missing {
   diag::Span span;
   std::string what;
   bool region = false;  ///< of a thread
 };
 
+/// Holds all obligations of one choreography.
 struct Obligations {
   std::vector<Obligation> all;  ///< equal formulas once
   std::vector<Missing> missing;
 };
 
-/// Every obligation of a choreography that is well-formed. If all of them hold, nothing is missing and all
-/// contracts are kept, then no two bodies ever meet, no body meets an obstacle, every motion begins where it
-/// may, every choice has an alternative, and every message is as it says. Cost: squares of the number of
-/// robots in a step and of threads in a fork, linear in the graph otherwise.
-/// With those that the typing of processes leaves open. `proved`: motions (`Type.Motion`) whose controllers
-/// were proved to keep their contracts, so that these can be kept.
+/// Returns every obligation of a choreography that is well-formed. If all of them hold, nothing is missing
+/// and all contracts are kept, then no two bodies ever meet, no body meets an obstacle, every motion begins
+/// where it may, every choice has an alternative, and every message is as it says. Cost: squares of the
+/// number of robots in a step and of threads in a fork, linear in the graph otherwise.
+/// @param conditions  what the typing of processes leaves open; each becomes an obligation.
+/// @param proved  motions (`Type.Motion`) whose controllers were proved to keep their contracts, so that
+/// these can be kept.
 Obligations ObligationsOf(const Graph& graph, expr::Arena& arena,
                           const std::vector<SideCondition>& conditions = {},
                           const std::set<std::string>& proved = {});
 
+/// Returns the name of the kind, as reports and JSON have it.
 std::string_view KindName(ObligationKind kind);
 
 }  // namespace rondo::choreo

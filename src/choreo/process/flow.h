@@ -6,20 +6,22 @@
 #include "choreo/graph/calls.h"
 #include "choreo/graph/graph.h"
 
+/// Represents processes as graphs.
 namespace rondo::choreo {
 
 using FlowId = base::Id<struct FlowTag>;
 
+/// Names the steps of a process.
 enum class FlowKind : uint8_t { kSend, kReceive, kMove, kIf, kAssign, kExit };
 
-/// One case of a `receive`. Its names stand for what the message carries in everything behind it.
+/// Represents one case of a `receive`. Its names stand for what the message carries in everything behind it.
 struct FlowCase {
   const Case* source = nullptr;
   RobotId peer;
   FlowId next;
 };
 
-/// A step of a process. What it mentions is evaluated later, when it is known what messages carry.
+/// Represents a step of a process. What it mentions is evaluated later, when it is known what messages carry.
 struct FlowNode {
   FlowKind kind = FlowKind::kExit;
   diag::Span span;
@@ -27,11 +29,11 @@ struct FlowNode {
   RobotId peer;                       ///< kSend
   std::vector<FlowCase> cases;        ///< kReceive
   FlowId next;                        ///< kSend, kMove, kAssign; kIf: if the guard holds
-  FlowId otherwise;                   ///< kIf
+  FlowId otherwise;                   ///< kIf: where the guard does not hold
   std::vector<const Case*> bindings;  ///< the cases whose names are in scope, the innermost last
 };
 
-/// A process as a graph: loops are edges back. Every loop has a step that others can see.
+/// Represents a process as a graph: loops are edges back. Every loop has a step that others can see.
 struct Flow {
   const ProcessDef* source = nullptr;
   RobotId robot;
@@ -40,8 +42,8 @@ struct Flow {
   const FlowNode& operator[](FlowId id) const { return nodes[id.index()]; }
 };
 
-/// The graph of a process; nothing after a report (robots and recursions that do not exist, loops that do
-/// nothing).
+/// Returns the graph of a process; nothing after a report (robots and recursions that do not exist, loops
+/// that do nothing).
 std::optional<Flow> BuildFlow(const ProcessDef& process, const Graph& graph, Declarations& declarations);
 
 }  // namespace rondo::choreo

@@ -7,17 +7,17 @@
 #include "choreo/process/flow.h"
 #include "choreo/project/project.h"
 
-/// Does each process do what its projection asks of it? (Definition 4.10 and Table 1 of the paper.)
+/// Checks that each process does what its projection asks of it (Definition 4.10 and Table 1 of the paper).
 namespace rondo::choreo {
 
-/// A choreography with the local types of all its robots.
+/// Holds a choreography with the local types of all its robots.
 struct Typed {
   Graph* graph;  ///< gets the motions that only processes do
   std::vector<LocalType> types;
 };
 
-/// What the structure leaves open: that `goal` holds wherever `hypothesis` does, for a robot that is in one
-/// of the nodes `at`.
+/// States what the structure leaves open: that `goal` holds wherever `hypothesis` does, for a robot that is
+/// in one of the nodes `at`.
 struct SideCondition {
   diag::Span span;
   std::string what;  ///< "whether the choreography offers this alternative", ...
@@ -36,7 +36,7 @@ struct SideCondition {
 std::vector<SideCondition> TypeProcess(const Flow& flow, Graph& graph, const LocalType& type,
                                        Declarations& declarations);
 
-/// Types every process of the module.
+/// Types every process of the module, and returns the side conditions of all of them.
 std::vector<SideCondition> CheckProcesses(const Module& module, const std::vector<Typed>& typed,
                                           Declarations& declarations);
 

@@ -2,8 +2,8 @@
 
 #include "choreo/prove/keeping_start.h"
 
-/// What has to be shown of a curve so that it keeps a step. Each result is where something fails: a formula
-/// that must have no solution.
+/// States what has to be shown of a curve so that it keeps a step (docs/theory.md, "Curves"). Each function
+/// but `Keeps` returns where something fails: a formula that must have no solution.
 namespace rondo::choreo {
 
 /// Proves that, from every state of the start, the curve begins no farther away than a bridge, is continuous,
@@ -11,11 +11,12 @@ namespace rondo::choreo {
 /// question for each part of `during` and each piece of the curve that is not plain.
 bool Keeps(KeepingStart& start, const Curve& curve);
 
-/// Where the curve begins farther than a bridge from where the step begins; one formula for each state.
+/// Returns where the curve begins farther than a bridge from where the step begins; one formula for each
+/// state.
 std::vector<expr::TermId> BridgeFails(KeepingStart& start, const CurvePiece& first);
-/// Where a state would have two values at the moment between two pieces.
+/// Returns where a state would have two values at the moment between two pieces.
 expr::TermId Jumps(KeepingStart& start, const CurvePiece& left, const CurvePiece& right);
-/// Where `post` does not hold at the end; nowhere if the step goes on for ever.
+/// Returns where `post` does not hold at the end; nowhere if the step goes on for ever.
 expr::TermId PostFails(KeepingStart& start, const Curve& curve);
 
 }  // namespace rondo::choreo

@@ -5,8 +5,10 @@
 #include "choreo/prove/keeping_start.h"
 #include "verdict/verdict.h"
 
+/// Decides whether the motions of a step can be kept at every moment (docs/theory.md, "Curves").
 namespace rondo::choreo {
 
+/// Holds the verdict about a step, and what it stands on.
 struct KeepingVerdict {
   verdict::Verdict verdict = verdict::Verdict::kUnknown;
   std::string why;                        ///< not kProved: what is in the way

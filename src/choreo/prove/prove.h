@@ -6,33 +6,36 @@
 #include "choreo/prove/decide.h"
 #include "solve/cache/proof_cache.h"
 
+/// Proves choreographies.
 namespace rondo::choreo {
 
-/// One obligation and what became of it.
+/// Holds what became of one obligation.
 struct Proof {
   Decision decision;
   double seconds = 0;
-  bool cached = false;       ///< known from an earlier run
-  bool certified = false;    ///< proved, and the checker has accepted every certificate
-  bool interrupted = false;  ///< unknown, because it was stopped by hand
-  bool confirmed = false;    ///< refuted, and FCL sees the contact of the witness as well
+  bool cached = false;       ///< it was known from an earlier run
+  bool certified = false;    ///< it is proved, and the checker has accepted every certificate
+  bool interrupted = false;  ///< it is unknown because somebody stopped the proof
+  bool confirmed = false;    ///< it is refuted, and FCL sees the contact of the witness as well
 };
 
+/// Says how obligations are decided.
 struct ProveOptions {
   Limits limits;
   unsigned jobs = 0;                                ///< 0: one for each core
-  const solve::cache::ProofCache* cache = nullptr;  ///< none: everything anew
+  const solve::cache::ProofCache* cache = nullptr;  ///< of proofs; nullptr: all are proved anew
   std::filesystem::path smt_out;       ///< where to write the obligations as SMT-LIB 2; empty: nowhere
   std::filesystem::path certificates;  ///< where to write certificates; empty: nowhere
   base::StopToken stop;
-  /// (how many are done, how many there are, what); one call at a time.
+  /// Receives how many obligations are done, how many there are, and which is done now; one call at a time.
   std::function<void(size_t, size_t, const std::string&)> progress;
 };
 
+/// Holds what became of all obligations.
 struct Proofs {
-  std::vector<Proof> all;             ///< for each obligation
+  std::vector<Proof> all;             ///< in the order of the obligations
   std::vector<std::string> problems;  ///< files that could not be written; certificates that were rejected
-  bool bug = false;                   ///< a certificate was rejected
+  bool bug = false;                   ///< a certificate was rejected, which is a bug of ours
 };
 
 /// Decides all obligations of one choreography, on several threads. What is proved is certified, unless

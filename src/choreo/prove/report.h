@@ -3,6 +3,7 @@
 #include "choreo/prove/prove.h"
 #include "diag/diagnostic.h"
 
+/// Says what became of the obligations of a choreography.
 namespace rondo::choreo {
 
 /// Checks witnesses by other means: FCL looks whether shapes touch, and formulas are evaluated in doubles.
@@ -14,15 +15,16 @@ void ConfirmWitnesses(const Obligations& obligations, expr::Arena& arena, Proofs
 void ReportProofs(const Graph& graph, const Obligations& obligations, const Proofs& proofs,
                   diag::Diagnostics& diagnostics);
 
-/// What a proof rests on, in sentences: contracts of motions, ranges, what controllers have to bridge.
-/// `proved`: motions (`Type.Motion`) whose contracts are proved.
+/// Returns what a proof rests on, in sentences: contracts of motions, ranges, what controllers have to
+/// bridge.
+/// @param proved  motions (`Type.Motion`) whose contracts are proved.
 std::vector<std::string> AssumptionsOf(const Graph& graph, const std::set<std::string>& proved,
                                        const Obligations& obligations, const Proofs& proofs);
 
-/// "arm.a = 130 deg", for each variable of a witness, in the order of the world.
+/// Returns the state of a witness, "arm.a = 130 deg" for each variable, in the order of the world.
 std::vector<std::string> StateOf(const Graph& graph, const Witness& witness);
 
-/// Where the point of a witness is: "(1 m, 0.5 m, 0 m)"; empty if it has none.
+/// Returns where the point of a witness is, in the world frame: "(1 m, 0.5 m, 0 m)"; empty if it has none.
 std::string PlaceOf(const Graph& graph, const Witness& witness);
 
 }  // namespace rondo::choreo

@@ -7,6 +7,7 @@
 #include "expr/numeric.h"
 #include "solve/icp/icp_solver.h"
 
+/// Samples states.
 namespace rondo::choreo {
 
 /// Draws states at random that satisfy a formula, in doubles: for search and for tests, never for proofs.
@@ -16,12 +17,12 @@ class Sampler {
  public:
   Sampler(const expr::Arena& arena, expr::TermId formula);
 
-  /// A state, or nothing after `tries` that failed.
+  /// Returns a state that satisfies the formula, or nothing after `tries` that failed.
   std::optional<expr::Numeric::Point> Draw(std::mt19937_64& random, int tries) const;
 
  private:
   std::optional<expr::Numeric::Point> Try(std::mt19937_64& random) const;
-  /// The equations of a conjunction, one alternative of each disjunction.
+  /// Collects the equations of a conjunction, with one alternative of each disjunction.
   void Equations(expr::TermId formula, std::mt19937_64& random, std::vector<expr::TermId>& equations) const;
 
   const expr::Arena& arena_;

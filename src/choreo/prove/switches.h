@@ -5,22 +5,26 @@
 
 #include "choreo/prove/curve.h"
 
+/// Cuts the time of a step where its formulas change.
 namespace rondo::choreo {
 
-/// The moments at which choices between terms change over, such as `select(clock < 2 s, a, b)`: where a
+/// Finds the moments at which choices between terms change over, such as `select(clock < 2 s, a, b)`: where a
 /// comparison of the clock with a number decides. Other choices stay as they are.
 class Switches {
  public:
+  /// Finds the switches of `formula`. Moments are seconds of `clock`.
   Switches(expr::Arena& arena, expr::TermId formula, expr::TermId clock);
 
-  /// Does the term change over continuously between two neighbouring moments?
+  /// Reports whether the term changes over continuously, for certain, between two neighbouring moments, given
+  /// that the variables in `changing` change continuously.
   bool IsContinuousBetween(expr::TermId term, const std::vector<expr::TermId>& changing);
+  /// Reports whether there is any such switch.
   bool any() const { return !plain_.empty(); }
-  /// The formula or term between two neighbouring moments, with its choices made; not at these moments, at
-  /// which it may choose otherwise.
+  /// Returns the formula or term between two neighbouring moments, with its choices made; not at these
+  /// moments, at which it may choose otherwise.
   expr::TermId Settled(expr::TermId term, const expr::Rational& from,
                        const std::optional<expr::Rational>& to);
-  /// The same curve in pieces without such moments inside.
+  /// Returns the same curve in pieces without such moments inside.
   Curve Split(const Curve& curve);
 
  private:

@@ -6,17 +6,20 @@
 #include <utility>
 #include <vector>
 
+/// Searches transition systems of robots exhaustively, and compares what they say. A System has `State`,
+/// `Start`, `Next` and `Ended`, as Team and Whole do.
 namespace rondo::choreo {
 
-/// What an exhaustive search found.
+/// Holds what an exhaustive search found.
 struct SearchResult {
   bool stuck = false;
   std::vector<std::string> run;  ///< the messages of a shortest run into a state where nothing can happen
   size_t states = 0;
-  bool complete = true;  ///< false: there are more states than were allowed
+  bool complete = true;  ///< false: there are more states than were allowed; the rest was not looked at
 };
 
-/// Looks for a reachable state that has not ended and in which nothing can happen, breadth first.
+/// Looks for a reachable state that has not ended and in which nothing can happen, breadth first, and gives
+/// up beyond `most_states`.
 template <typename System>
 SearchResult FindStuck(const System& system, size_t most_states) {
   using State = typename System::State;
@@ -55,7 +58,7 @@ SearchResult FindStuck(const System& system, size_t most_states) {
   return result;
 }
 
-/// All states that are reached from `from` without a message.
+/// Returns all states that are reached from `from` without a message, itself included.
 template <typename System>
 std::set<typename System::State> Silently(const System& system,
                                           const std::set<typename System::State>& from) {
@@ -72,7 +75,7 @@ std::set<typename System::State> Silently(const System& system,
   return seen;
 }
 
-/// By message: the states right behind it.
+/// Returns, by message that is possible in one of the states, the states right behind it.
 template <typename System>
 std::map<std::string, std::set<typename System::State>> Heard(
     const System& system, const std::set<typename System::State>& states) {
@@ -85,8 +88,9 @@ std::map<std::string, std::set<typename System::State>> Heard(
   return heard;
 }
 
-/// A shortest sequence of messages that one system allows and the other does not; with a reason. Empty if
-/// both allow the same, as far as `most_pairs` sets of states show.
+/// Returns a shortest sequence of messages that one system allows and the other does not, with a last entry
+/// that says which one does. Empty if both allow the same, as far as `most_pairs` sets of states show. Cost:
+/// exponential in the number of states at worst (subset construction).
 template <typename A, typename B>
 std::vector<std::string> DifferentTrace(const A& a, const B& b, size_t most_pairs) {
   using Sets = std::pair<std::set<typename A::State>, std::set<typename B::State>>;

@@ -8,13 +8,15 @@
 #include "choreo/semantics/machine.h"
 #include "choreo/semantics/ticks.h"
 
+/// Executes the machines of all robots of a choreography in parallel.
 namespace rondo::choreo {
 
-/// Robots that run their machines together.
+/// Runs the machines of several robots together, in ticks (`Ticks`), as a transition system for the searches
+/// of search.h.
 class Team {
  public:
-  /// Where one robot is. While it moves, `at` is where it will be, `move` the edge that it came by and
-  /// `clock` the ticks since it began.
+  /// Tells where one robot is. While it moves, `at` is where it will be, `from` and `edge` tell the motion
+  /// that it makes, and `clock` the ticks since it began.
   struct Local {
     size_t at = 0;
     bool moving = false;
@@ -23,7 +25,8 @@ class Team {
     friend auto operator<=>(const Local&, const Local&) = default;
   };
   using State = std::vector<Local>;
-  /// What happens, `0>1:hello` for a message of the first robot to the second one, empty for everything else.
+  /// Tells what happens, `0>1:hello` for a message of the first robot to the second one, empty for everything
+  /// else, and the state behind it.
   struct Step {
     std::string label;
     State state;
@@ -31,9 +34,12 @@ class Team {
 
   explicit Team(std::vector<Machine> machines);
 
+  /// Returns the state in which every robot is at its beginning.
   State Start() const { return State(machines_.size()); }
+  /// Returns every step that is possible in the state: messages, choices, beginnings of motions, and a tick
+  /// in which all robots move on.
   std::vector<Step> Next(const State& state) const;
-  /// Has every robot come to an end?
+  /// Reports whether every robot may be at its end.
   bool Ended(const State& state) const;
 
  private:

@@ -8,7 +8,9 @@
 #include "lang/token.h"
 #include "robot/syntax/ast.h"
 
-/// The syntax of `.rondo` files: robots with motion primitives, worlds, choreographies (docs/motion.md).
+/// Represents the syntax of `.rondo` files: robots with motion primitives, worlds, choreographies
+/// (docs/motion.md), and that of the original tools. Ids of expressions that are absent are invalid; names
+/// that are absent are empty.
 namespace rondo::choreo {
 
 using lang::ExprId;
@@ -26,17 +28,19 @@ using robot::WorldDef;
 
 // -- choreographies
 
-/// `eta: time | eta > 0 s`, or a value.
+/// Represents what a message carries: `eta: time | eta > 0 s`, or a value.
 struct Payload {
   Name name, type;  ///< empty for a value
   ExprId value;     ///< the value, or what is known of it; may be missing
 };
 
+/// Represents the call of a motion, of a robot where it has to be named.
 struct MotionCall {
   Name robot, motion;
   std::vector<Argument> args;
 };
 
+/// Names the statements of a choreography.
 enum class StmtKind : uint8_t {
   kMessage,   // a -> b: label(payload) when guard
   kMotion,    // a: M(args), or { a: M(args), b: N(args) }
@@ -50,7 +54,7 @@ enum class StmtKind : uint8_t {
 
 struct Stmt;
 
-/// A thread of `parallel`, or an alternative of `choose`.
+/// Represents a thread of `parallel`, or an alternative of `choose`.
 struct Branch {
   diag::Span span;            ///< of the line that opens it
   ExprId guard;               ///< kChoose
@@ -60,6 +64,7 @@ struct Branch {
   std::vector<Stmt> body;
 };
 
+/// Represents a statement of a choreography. Which fields are used depends on its kind.
 struct Stmt {
   StmtKind kind = StmtKind::kLoop;
   diag::Span span;  ///< of the first line for statements with a body
@@ -75,9 +80,11 @@ struct Stmt {
 
 // -- choreographies as equations (`.chor`)
 
+/// Names the equations of a `.chor` file, as the nodes of graphs are named.
 enum class EquationKind : uint8_t { kMessage, kMotion, kChoice, kMerge, kFork, kJoin, kEnd };
 
-/// `x1 = a -> b: hello(); x2`, `x3 + x4 = x5`, `x6 = { region } x7 || { region } x8`, ...
+/// Represents an equation between states: `x1 = a -> b: hello(); x2`, `x3 + x4 = x5`, `x6 = { region } x7 ||
+/// { region } x8`, ...
 struct Equation {
   EquationKind kind = EquationKind::kEnd;
   diag::Span span;
@@ -85,6 +92,7 @@ struct Equation {
   Stmt step;  ///< what a message, motion, choice or fork says; its branches have no bodies
 };
 
+/// Represents a choreography, with a body or with equations.
 struct ChoreographyDef {
   diag::Span span;
   Name name, world;
@@ -95,7 +103,7 @@ struct ChoreographyDef {
   Name first;                       ///< where equations begin
 };
 
-/// `contract Docked { assume ... guarantee ... }`: facts of threads that have a name.
+/// Represents `contract Docked { assume ... guarantee ... }`: facts of threads that have a name.
 struct ContractDef {
   diag::Span span;
   Name name;
@@ -104,6 +112,7 @@ struct ContractDef {
 
 // -- processes
 
+/// Names the acts of a process.
 enum class ActKind : uint8_t {
   kSend,      // send peer.label(values)
   kReceive,   // receive from peer while Idle() { label(names) => { } ... }
@@ -119,6 +128,7 @@ enum class ActKind : uint8_t {
 
 struct Act;
 
+/// Represents one case of a `receive`: a message and what follows it.
 struct Case {
   diag::Span span;
   Name peer, label;
@@ -126,6 +136,7 @@ struct Case {
   std::vector<Act> body;
 };
 
+/// Represents one act of a process. Which fields are used depends on its kind.
 struct Act {
   ActKind kind = ActKind::kExit;
   diag::Span span;  ///< of the first line for acts with a body
@@ -138,17 +149,17 @@ struct Act {
   std::vector<Act> body, otherwise;
 };
 
-/// What one robot does of a choreography.
+/// Represents a process: what one robot does of a choreography.
 struct ProcessDef {
   diag::Span span;
   Name robot;
   Name choreography;  ///< empty: the only one there is
   std::vector<Act> body;
-  /// Motions may be spelled as the original interpreter found them: `moveCart`, `m_MoveCart`.
+  /// Says that motions may be spelled as the original interpreter found them: `moveCart`, `m_MoveCart`.
   bool loose_names = false;
 };
 
-/// `import "models/cart.rondo"`
+/// Represents an import such as `import "models/cart.rondo"`.
 struct ImportDef {
   diag::Span span;
   std::string path;
@@ -156,7 +167,7 @@ struct ImportDef {
 
 using Item = std::variant<ImportDef, RobotDef, WorldDef, ContractDef, ChoreographyDef, ProcessDef>;
 
-/// One or more files, items in order.
+/// Holds one or more files, their items in order.
 struct Module {
   lang::ExprPool exprs;
   std::vector<Item> items;

@@ -3,6 +3,7 @@
 #include "choreo/syntax/ast.h"
 #include "diag/diagnostic.h"
 
+/// Reads the files of the original tools: `.chor` and `.rosl`.
 namespace rondo::choreo {
 
 /// Adds the choreography of a `.chor` file to `module`: equations between states, as the original tool reads

@@ -6,13 +6,15 @@
 #include "choreo/syntax/ast.h"
 #include "lang/expr_parser.h"
 
+/// Shares the expressions of `.chor` and `.rosl` files.
 namespace rondo::choreo {
 
-/// Expressions of the original tool, which has two grammars for them: one of choreographies, one of programs.
-/// In both, operators bind differently than in C or mathematics; where that matters there is a warning.
+/// Reads expressions of the original tool, which has two grammars for them: one of choreographies, one of
+/// programs. In both, operators bind differently than in C or mathematics; where that matters there is a
+/// warning.
 class LegacyExprParser : public lang::ExprParser {
  public:
-  /// What binds looser comes first; operators of one level associate to the left.
+  /// Names the grammars. What binds looser comes first; operators of one level associate to the left.
   enum class Dialect : uint8_t {
     kChoreography,  // && ||  <  comparisons  <  + -  <  * / %  <  **  <  ! -
     kProgram,       // && || comparisons  <  !  <  + -  <  * / %  <  **  <  -
@@ -22,11 +24,15 @@ class LegacyExprParser : public lang::ExprParser {
   LegacyExprParser(const lang::TokenStream& stream, Module& module, diag::Diagnostics& diagnostics,
                    Dialect dialect);
 
+  /// Reads an expression.
   ExprId ParseLegacy();
+  /// Reads arguments in parentheses.
   std::vector<ExprId> ParseLegacyArguments();
+  /// Reads a name; `what` says in messages what it should name.
   Name ParseName(std::string_view what);
-  /// Names of the coordinates of a point: `fpx`, `fpy`, `fpz` unless a thread gives others.
+  /// Sets the names of the coordinates of a point: `fpx`, `fpy`, `fpz` unless a thread gives others.
   void SetPoint(std::string x, std::string y, std::string z);
+  /// Returns the last world of the module, which names such as `cart_x` are about; nullptr if it has none.
   const WorldDef* world() const { return world_; }
 
  private:

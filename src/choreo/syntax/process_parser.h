@@ -5,17 +5,18 @@
 #include "choreo/syntax/ast.h"
 #include "robot/syntax/parser.h"
 
+/// Shares the parser of processes.
 namespace rondo::choreo {
 
-/// Reads processes: what one robot does. The base of the parser of `.rondo` files.
+/// Reads processes, which say what one robot does. The base of the parser of `.rondo` files.
 class ProcessParser : public robot::Parser {
  public:
   using robot::Parser::Parser;
 
  protected:
-  /// Behind `process`, up to the closing brace.
+  /// Reads a process behind the word `process`, up to the closing brace; nothing after a report.
   std::optional<ProcessDef> ParseProcess(diag::Span start);
-  /// `Move(1 m)`, for a robot.
+  /// Reads the call of a motion, such as `Move(1 m)`, of a robot.
   MotionCall ParseCall(Name robot);
 
  private:

@@ -236,7 +236,7 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
     case Builtin::kMin:
     case Builtin::kMax: {
       if (!Arity(e, builtin == Builtin::kAbs ? 1 : 2, builtin == Builtin::kAbs ? 1 : 1000, name))
-        return types.real();
+        return types.error();
       bool all_int = true;
       for (size_t i = 1; i < e.args.size(); ++i) {
         const TypeId t = Expr(e.args[i]);

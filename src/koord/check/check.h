@@ -3,6 +3,7 @@
 #include "diag/diagnostic.h"
 #include "koord/check/model.h"
 
+/// Checks Koord programs before anything else is done with them.
 namespace rondo::koord {
 
 /// Resolves names and types and applies every static rule, reporting all violations. The model is usable for

@@ -4,14 +4,16 @@
 
 #include "koord/check/check.h"
 
+/// Declares the checker behind `Check`; only its own sources include it.
 namespace rondo::koord {
 
-/// The checker. Its rules are split over files by what they are about: declarations, expressions, calls,
-/// statements, specifications.
+/// Checks one program and makes its model; to be run once. The rules are split over files by what they are
+/// about: declarations, names, expressions, calls, statements, specifications, explorations.
 class Checker {
  public:
   Checker(const Program& program, diag::Diagnostics& diagnostics)
       : program_(program), exprs_(program.exprs), diagnostics_(diagnostics) {}
+  /// Applies every rule, reports all violations, and returns the model.
   Model Run();
 
  private:
@@ -78,7 +80,7 @@ class Checker {
   void Body(const std::vector<Stmt>& body);
   void Statement(const Stmt& stmt);
   void Assign(const Stmt& stmt);
-  /// The type that can be assigned; checks that writing is allowed. Invalid after a report.
+  /// Returns the type that can be assigned; checks that writing is allowed. Invalid after a report.
   TypeId Target(ExprId id);
   TypeId TargetRoot(ExprId id, size_t variable);
   void LoopIn(const Stmt& stmt);
@@ -97,7 +99,8 @@ class Checker {
   void ExploreFunction(const ExploreEntry& entry);
   int FindFunction(const std::string& name) const;
 
-  /// An initial value may mention parameters, functions and, where each robot has its own, `pid`.
+  /// Reports what an initial value must not mention: anything but parameters, functions and, where each robot
+  /// has its own, `pid`.
   void RestrictInitial(ExprId e, const Variable& variable);
   /// Reports each name in `e` that this kind of specification must not mention.
   void RestrictScope(ExprId e, const AssumeDef* port, std::string_view what);

@@ -8,32 +8,39 @@
 #include "koord/syntax/ast.h"
 #include "lang/types.h"
 
+/// Holds Koord programs after name and type resolution, for every engine.
 namespace rondo::koord {
 
 using lang::TypeId;
 
+/// Names who may read and write a variable: its robot alone (kLocal), its robot writes and all read
+/// (kAllread), all (kAllwrite), the environment (kSensor), the program towards the controller (kActuator),
+/// nobody (kParam).
 enum class VariableKind : uint8_t { kLocal, kAllread, kAllwrite, kSensor, kActuator, kParam };
 
-/// A variable, port or parameter. Locals, ports and `allread` cells exist once for each robot.
+/// Describes a variable, port or parameter. Locals, ports and `allread` cells exist once for each robot.
 struct Variable {
   VariableKind kind;
   std::string name;    ///< as programs write it: `x`, `Motion.psn`
-  std::string module;  ///< of a port
+  std::string module;  ///< of a port, else empty
   TypeId type;         ///< of one robot's cell for `allread`, else as declared
   diag::Span span;
   ExprId initial;
-  /// A sensor that is called like a function, such as a planner: its result type; `type` is then of no use.
+  /// Gives the function of a sensor that is called like one, such as a planner; `type` is then of no use. -1
+  /// for all others.
   int function = -1;
 
+  /// Reports whether each robot has its own.
   bool PerRobot() const { return kind != VariableKind::kAllwrite && kind != VariableKind::kParam; }
+  /// Reports whether every robot can read it.
   bool Shared() const { return kind == VariableKind::kAllread || kind == VariableKind::kAllwrite; }
 };
 
-/// The length of an array with one item for each robot.
+/// Names the length of an array with one item for each robot.
 inline constexpr const char* kRobotsLength = "N_sys";
 
-/// A function of the program (with a body) or of the world (without: uninterpreted, constrained by summaries
-/// only).
+/// Describes a function of the program (with a body) or of the world (without: uninterpreted, constrained by
+/// summaries only).
 struct Function {
   std::string name;
   std::vector<std::string> parameter_names;
@@ -42,11 +49,12 @@ struct Function {
   const FunctionDef* def = nullptr;  ///< nullptr if it is only used
   bool declared = false;
   diag::Span span;  ///< of its declaration or first use
-  int port = -1;    ///< the variable that it is called through
+  int port = -1;    ///< the variable that it is called through; -1 if it is no port
+  /// Reports whether the program has no body for it.
   bool external() const { return def == nullptr || !def->has_body; }
 };
 
-/// What a name, member or index expression refers to.
+/// Names what a name, member or index expression refers to.
 enum class RefKind : uint8_t {
   kNone,
   kVariable,     ///< the robot's own value; the whole array for `allread`
@@ -59,11 +67,13 @@ enum class RefKind : uint8_t {
   kBuiltin,      ///< of a call: index is a Builtin
   kOpaqueField,  ///< a member of an opaque type: the function `index` of the base
 };
+/// Tells what an expression refers to; what `index` counts depends on the kind.
 struct Ref {
   RefKind kind = RefKind::kNone;
   uint32_t index = 0;
 };
 
+/// Names the functions that every program can call.
 enum class Builtin : uint8_t {
   kPos,
   kMid,
@@ -79,17 +89,17 @@ enum class Builtin : uint8_t {
   kGrid  ///< only in the `explore` section
 };
 
-/// A variable of a quantifier, loop, function or summary.
+/// Describes a variable of a quantifier, loop, function or summary.
 struct Binding {
   std::string name;
   TypeId type;
   diag::Span span;
 };
 
-/// What `forall i in D` ranges over.
+/// Names what the D of `forall i in D` is: all robots, all values of a type, the items of a list.
 enum class DomainKind : uint8_t { kRobots, kType, kList };
 
-/// The `explore` sections: what makes the program executable in finitely many ways.
+/// Holds what the `explore` sections say, which makes the program executable in finitely many ways.
 struct Exploration {
   ExprId robots;                                    ///< N_sys: a number or a list; invalid if not given
   std::map<size_t, ExprId> values;                  ///< by parameter
@@ -97,7 +107,7 @@ struct Exploration {
   std::map<size_t, const ExploreEntry*> functions;  ///< by external function; its bindings are in `bound_by`
 };
 
-/// A program whose names and types are known. Points into the Program, which must outlive it.
+/// Holds a program whose names and types are known. Points into the Program, which must outlive it.
 struct Model {
   const Program* program = nullptr;
   lang::TypeTable types;
@@ -105,7 +115,7 @@ struct Model {
   std::vector<Function> functions;
   std::vector<Binding> bindings;
   std::map<std::string, TypeId> named_types;
-  /// The lengths of arrays, by the text that is part of their types; without `kRobotsLength`.
+  /// Holds the lengths of arrays, by the text that is part of their types; without `kRobotsLength`.
   std::map<std::string, ExprId> lengths;
   std::vector<const EventDef*> events;
   std::vector<const InitDef*> inits;
@@ -115,16 +125,16 @@ struct Model {
   std::vector<const PlatformDef*> platforms;
   Exploration exploration;
 
-  // By expression.
+  // Both by number of the expression (ExprId::index): its type, and what it refers to.
   std::vector<TypeId> type_of;
   std::vector<Ref> ref_of;
-  /// By quantifier: for each binder its domain, and for each of its names the binding.
+  /// Holds, by quantifier, for each binder its domain, and for each of its names the binding.
   struct Domains {
     std::vector<DomainKind> kinds;
     std::vector<std::vector<uint32_t>> bindings;
   };
   std::map<ExprId, Domains> domains;
-  /// By function definition, loop statement or summary: the bindings of its variables.
+  /// Holds, by function definition, loop statement or summary, the bindings of its variables.
   std::map<const void*, std::vector<uint32_t>> bound_by;
 
   TypeId TypeOf(ExprId e) const { return types.Resolve(type_of[e.index()]); }

@@ -4,23 +4,28 @@
 
 #include "koord/check/model.h"
 
-/// What reports call the parts of a specification, and what all engines must agree on about them.
+/// Names the parts of a specification as reports call them, and decides what all engines must agree on about
+/// them.
 namespace rondo::koord {
 
+/// Returns the name of invariant `i`, or what stands for it if it has none.
 std::string InvariantName(const Model& model, size_t i);
-/// Unnamed assumptions about one module are told apart by their order.
+/// Returns the name of an assumption. Unnamed assumptions about one module are told apart by their order.
 std::string AssumptionName(const Model& model, const AssumeDef& def);
+/// Returns what reports call a summary.
 std::string SummaryName(const SummaryDef& def);
 
-/// Is there arithmetic on floats or points? Proofs compute with real numbers, robots with doubles.
+/// Reports whether there is arithmetic on floats or points. Proofs compute with real numbers, robots with
+/// doubles.
 bool UsesFloatArithmetic(const Model& model);
 
-/// Can some robot `stop`?
+/// Reports whether some robot can execute `stop`.
 bool RobotsStop(const Model& model);
 
-/// Does it contain `old(...)`?
+/// Reports whether the expression contains `old(...)`.
 bool UsesOld(const Model& model, ExprId e);
-/// A controller assumption that must hold at every moment, not only as the consequence of a condition.
+/// Reports whether a controller assumption must hold at every moment by itself, not only as the consequence
+/// of a condition (`when`) or in comparison with the past (`old`).
 bool HoldsAlways(const Model& model, const AssumeDef& def);
 
 }  // namespace rondo::koord

@@ -247,7 +247,7 @@ class Prover {
     const std::vector<std::string>& actions = problems.round().actions();
     for (size_t i = 0; i < problems.theory().invariants(); ++i)
       report_.rows.push_back({InvariantName(model_, i), model_.invariants[i]->span, {}, {}, {}, {}});
-    Row defined{"well-defined", {}, {}, {}, {}};
+    Row defined{"well-defined", {}, {}, {}, {}, {}};
     for (const Task& task : tasks_) {
       if (task.kind == TaskKind::kInitially)
         report_.rows[task.subject].cells.push_back(MakeCell(task, "initially", std::nullopt));

@@ -4,9 +4,11 @@
 #include "koord/prove/prove.h"
 #include "koord/prove/witness.h"
 
+/// Says what became of the proof of a Koord program, in words that lead to a repair.
 namespace rondo::koord {
 
-/// Turns what the solver said into verdicts and diagnostics that a robotics engineer can act on.
+/// Turns what the solver said into verdicts and diagnostics that a robotics engineer can act on. All
+/// arguments must outlive it; `witnesses` holds the counterexamples by number of the invariant.
 class Reporter {
  public:
   Reporter(const Model& model, const ProveOptions& options, Problems& problems,
@@ -18,14 +20,20 @@ class Reporter {
         report_(report),
         witnesses_(witnesses) {}
 
-  /// The assumptions named in `core` cannot all be true.
+  /// Reports that the assumptions named in `core` cannot all be true, and marks the report: then nothing
+  /// counts as proved. `what` says which check found it.
   void Contradiction(const std::string& what, const std::vector<std::string>& core);
+  /// Reports that no state that satisfies the invariants enables the event of this action; `core` names what
+  /// excludes it.
   void NeverEnabled(size_t action, const std::vector<std::string>& core);
-  /// Promise `p` does not hold yet when the environment takes over.
+  /// Reports that promise `p` need not hold yet when the environment takes over, if a team of one or two
+  /// robots shows that with every quantifier in place; else reports nothing. Asks the solver, for a second at
+  /// most each time.
   void Unrealisable(size_t p);
   /// Reports each invariant that could not be proved, with its witness or what is known instead.
   void Failures();
-  /// Verdicts of the rows that did not fail: proved, unless a proof rests on what is not proved.
+  /// Decides the verdicts of the rows that did not fail: proved, unless a proof rests on what is not proved.
+  /// This is the greatest set of invariants that rest on each other only (docs/theory.md, "Dependence").
   void Verdicts();
 
  private:

@@ -6,9 +6,10 @@
 #include "koord/prove/obligations/problem.h"
 #include "koord/prove/results.h"
 
+/// Looks for counterexamples to invariants.
 namespace rondo::koord {
 
-/// A round that breaks an invariant, with a small number of robots.
+/// Tells a round, or an initial state, that breaks an invariant, with a small number of robots.
 struct Witness {
   std::optional<size_t> action;  ///< the first action of the round; none for an initial state
   bool confirmed =
@@ -23,7 +24,7 @@ struct Witness {
 /// Looks for a witness that invariant `i` fails in an initial state (`initial`), or in any round from a state
 /// that satisfies every invariant. Tries teams of 1 to 4 robots, or the fixed size if that is at most 8. A
 /// witness is confirmed with every quantifier in place; without a confirmed one, returns a candidate if there
-/// is any. `budget`: for all of the search.
+/// is any. Returns nothing if neither was found within `budget`, which is for all of the search.
 std::optional<Witness> FindWitness(const Model& model, size_t invariant, bool initial,
                                    std::optional<int64_t> robots, const solve::Solver& solver,
                                    const solve::Budget& budget, const base::StopToken& stop);

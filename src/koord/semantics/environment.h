@@ -6,30 +6,38 @@
 
 #include "koord/semantics/team.h"
 
+/// Lists what the environment may do in one step of an exploration.
 namespace rondo::koord::semantics {
 
-/// The environment (rules EnvTrans, RobotEnv) where sensors take values from declared finite sets: at any
-/// moment until the next round, each robot's sensors have any declared values that the controller assumptions
-/// allow.
+/// Enumerates the environment's transitions and the initial states (rules EnvTrans, RobotEnv) where sensors
+/// take values from declared finite sets: at any moment until the next round, each robot's sensors have any
+/// declared values that the controller assumptions allow. Actuators and all other variables stay as they are.
 class Environment {
  public:
-  /// Reports sensors whose values are not declared.
+  /// Reports each sensor whose values are not declared, unless its type has finitely many (truth values and
+  /// enumerations).
   Environment(Team& team, diag::Diagnostics& diagnostics);
 
+  /// Receives a state, which is valid during the call. Returns whether to go on.
   using Visit = std::function<bool(std::span<const Word>)>;
   /// Calls `visit` for each state that the environment can make of `settled`, the end of the program
-  /// transition. False if `visit` was.
+  /// transition. Returns false if `visit` did. Visits nothing if a robot is `stuck` or declared values have a
+  /// `fault`.
   bool Move(std::span<const Word> settled, const Visit& visit);
-  /// During the last `Move`: the first robot whose sensors could not take any value, or -1.
+  /// Returns the first robot for whose sensors the last `Move` found no values that the assumptions allow; -1
+  /// if there is none.
   int stuck() const { return stuck_; }
 
-  /// Every state with declared initial values, before `init`.
+  /// Calls `visit` for each state before `init`: declared values where there are any, each declared choice
+  /// elsewhere, and what `assume initially` determines.
   bool Declared(const Visit& visit);
-  /// A fault in the code of an initial value or list of choices.
+  /// Returns why the code of an initial value or of a list of choices has no value, and where; kNone if that
+  /// did not happen.
   Fault fault() const { return fault_; }
   diag::Span fault_span() const { return fault_span_; }
 
-  /// May the state begin a run? After `init`: `assume initially` and what ports always keep.
+  /// Reports whether a run may begin in the state, the one after `init`: `assume initially` holds, and so do
+  /// the controller assumptions that hold at every moment.
   bool MayBegin(std::span<const Word> state);
 
  private:

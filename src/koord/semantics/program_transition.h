@@ -6,54 +6,59 @@
 
 #include "koord/semantics/team.h"
 
+/// Lists what a team may do in the program transition of one round.
 namespace rondo::koord::semantics {
 
-/// What one enabled event of one robot does, in terms of the values at the start of the round.
+/// Holds what one enabled event of one robot does, in terms of the values at the start of the round.
 struct Effect {
   uint32_t event;
   bool urgent;
   bool locks;
-  Fault fault;  ///< it cannot be completed
+  Fault fault;  ///< why the event cannot be completed; kNone if it can
   diag::Span fault_span;
-  bool idle;  ///< it changes nothing and takes no lock: like a skip
+  bool idle;  ///< it changes nothing and takes no lock, so that it is the same as a skip
   struct Write {
     uint32_t at;
     Word value;
   };
-  std::vector<Write> own;  ///< to the robot's block
+  std::vector<Write> own;  ///< to the robot's own block, at addresses of the state
   struct Shared {
     Machine::Unit unit;
     uint32_t values;  ///< the new words are in `words` from here
   };
-  std::vector<Shared> shared;  ///< to what every robot may write
+  std::vector<Shared> shared;  ///< to variables and cells that every robot may write
   std::vector<Word> words;
 };
 
-/// One last writer among several.
+/// Tells who wrote a variable or cell last where several robots wrote different values to it.
 struct LastWriter {
   Machine::Unit unit;
   size_t robot;
 };
 
-/// The program transition of a round (rules SelectEvent, SkipEvent, EventTrans, EndProgTrans): every robot
-/// runs one enabled event or skips, all read the values at the start, at most one robot holds the lock of an
-/// event, and what every robot may write keeps the value of its last writer. The events of a round commute
-/// but for last writers and locks, so orders are not enumerated (docs/theory.md, "Exploration").
+/// Enumerates the program transition of a round (rules SelectEvent, SkipEvent, EventTrans, EndProgTrans):
+/// every robot runs one enabled event or skips, all read the values at the start, at most one robot holds the
+/// lock of an event, and what every robot may write keeps the value of its last writer. The events of a round
+/// commute but for last writers and locks, so orders are not enumerated (docs/theory.md, "Exploration").
 class ProgramTransition {
  public:
   explicit ProgramTransition(Team& team);
   ProgramTransition(const ProgramTransition&) = delete;
   ProgramTransition& operator=(const ProgramTransition&) = delete;
 
-  /// Finds what each robot can do in `state`. The state must stay as it is until the last `Enumerate`.
+  /// Finds what each robot can do in `state` by running its enabled events there. The state must stay as it
+  /// is until the last `Enumerate`.
   void Prepare(std::span<const Word> state);
-  /// The same for the one execution of `init` by every robot.
+  /// Does the same for the one execution of `init` by every robot, before the first round.
   void PrepareInit(std::span<const Word> state);
 
-  /// The effects of robot r's enabled events.
+  /// Returns the effects of the enabled events of robot `robot`: several of one event, where `any` has
+  /// several values.
   std::span<const Effect> Of(size_t robot) const { return {effects_[robot].data(), counts_[robot]}; }
+  /// Reports whether some robot has an enabled event.
   bool AnyEnabled() const;
-  /// The first event that cannot be completed, and its robot; or nullptr.
+  /// Returns the first effect that cannot be completed, and puts its robot into `robot`; nullptr if there is
+  /// none.
   const Effect* Failed(size_t* robot) const;
 
   /// Calls `visit(state, complete)` for each state in which the events of a round can leave the team, before
@@ -61,14 +66,17 @@ class ProgramTransition {
   /// false. A state may be visited more than once.
   using Visit = std::function<bool(std::span<const Word>, bool)>;
   bool Enumerate(const Visit& visit);
-  /// The same without the reduction: every order of the robots, every prefix. For tests.
+  /// Does the same without the reduction: visits every order of the robots and every prefix of it.
+  /// Exponential in the number of robots, and meant for tests of the reduction.
   bool EnumerateOrders(const Visit& visit);
 
-  /// Robots can be renamed: of neighbours in the same state, one order of their choices is enough.
+  /// Says that robots can be renamed (`IsSymmetric`), so that of neighbours in the same state only one order
+  /// of their choices is visited.
   void TreatAlike(bool alike) { alike_ = alike; }
 
   static constexpr int kSkips = -1;
-  /// During `visit`: by robot, its effect or `kSkips`; and who wrote last where several did.
+  /// Returns, during `visit`, which effect of `Of` each robot chose, or `kSkips`; and who wrote last where
+  /// several robots did.
   const std::vector<int>& choice() const { return choice_; }
   const std::vector<LastWriter>& last_writers() const { return last_; }
 

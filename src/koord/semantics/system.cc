@@ -21,6 +21,7 @@ System::System(Team& team, const SystemOptions& options, diag::Diagnostics& diag
       packed_(packing_.words()),
       canonical_(team.layout().words()),
       enabled_(team.events().size()),
+      seen_(team.events().size()),
       undefined_(team.invariants().size()),
       emitted_(team.layout().words()) {
   team.machine().CheckSummaries(true);
@@ -139,12 +140,11 @@ Broken System::Program(std::span<const Word> state, const explore::Visit& visit)
   size_t robot = 0;
   if (const Effect* failed = transition_.Failed(&robot))
     return Failure(failed->fault, failed->fault_span, robot, static_cast<int>(failed->event));
-  uint64_t seen = 0;
+  std::fill(seen_.begin(), seen_.end(), false);
   for (size_t r = 0; r < team_.robots(); ++r) {
     for (const Effect& e : transition_.Of(r)) {
-      const uint64_t bit = uint64_t{1} << (e.event & 63);
-      if ((seen & bit) == 0) ++enabled_[e.event];
-      seen |= bit;
+      if (!seen_[e.event]) ++enabled_[e.event];
+      seen_[e.event] = true;
     }
   }
   const Word phase = team_.has_sensors() ? 1 : 0;

@@ -9,84 +9,101 @@
 #include "koord/semantics/machine/packing.h"
 #include "koord/semantics/program_transition.h"
 
+/// Gives searches a team of robots as a graph of states.
 namespace rondo::koord::semantics {
 
+/// Says which reductions a search uses, and what it checks.
 struct SystemOptions {
-  bool reduce = true;          ///< false: every order of the robots, one after the other
-  bool symmetry = true;        ///< where the program allows it
-  std::optional<size_t> only;  ///< this invariant alone
+  bool reduce = true;          ///< false: visits every order of the robots, one after the other
+  bool symmetry = true;        ///< states that differ by a renaming count as one, where that is sound
+  std::optional<size_t> only;  ///< checks this invariant alone
 };
 
-/// What one robot did in a round.
+/// Tells what one robot did in a round.
 struct Action {
   size_t robot;
   int event;  ///< -1: it skipped
   std::vector<Effect::Write> writes;
 };
 
-/// One transition of a run, told in full.
+/// Tells one transition of a run in full.
 struct Step {
-  bool environment = false;  ///< the sensors moved; else the program transition
-  bool complete = true;      ///< false: a part of the robots, before the others
+  bool environment = false;  ///< the sensors moved; false: it is a program transition
+  bool complete = true;      ///< false: only some of the robots have run yet, and the others did not skip
   std::vector<Action> actions;
   std::vector<LastWriter> last_writers;
-  std::vector<Word> state;  ///< at its end, unpacked
+  std::vector<Word> state;  ///< at the end of the transition, unpacked
 };
 
-/// What a run can break: the invariants, by number, and behind them:
+/// Names what a run can break. Properties are numbered: first the invariants in order, then one number for
+/// operations without a value (kFault), then one for summaries that a call violates (kSummary).
 enum class Trouble : uint8_t { kInvariant, kFault, kSummary };
 
-/// A team of robots as a transition system of packed states. A state is the start of a round or, if there
-/// are sensors, also the end of a program transition.
+/// Presents a team of robots as a transition system of packed states (`explore::TransitionSystem`). A state
+/// is the start of a round or, if there are sensors, also the end of a program transition; a flag in its
+/// first word tells which.
 class System {
  public:
   System(Team& team, const SystemOptions& options, diag::Diagnostics& diagnostics);
 
   size_t words() const { return packing_.words(); }
+  /// Visits every initial state, those after `init` that the assumptions allow. Returns what is broken first,
+  /// if anything is; then it ends early.
   explore::Broken Initial(const explore::Visit& visit);
+  /// Visits every state that one transition leads to from `packed`. Returns what is broken first, in such a
+  /// state or on the way, and ends early then.
   explore::Broken Successors(std::span<const Word> packed, const explore::Visit& visit);
+  /// Reports whether nothing can change any more from the start of a round: no event is enabled, not all
+  /// robots have stopped, and no move of the environment changes a sensor.
   bool Deadlocked(std::span<const Word> packed);
 
+  /// Reports whether states are taken up to a renaming of robots: it was asked for, there are several robots,
+  /// and the program allows it.
   bool symmetric() const { return symmetric_; }
-  /// Transitions of a round.
+  /// Returns how many transitions make a round: 2 with sensors, else 1.
   uint32_t phases() const { return team_.has_sensors() ? 2 : 1; }
-  /// Is it the start of a round?
+  /// Reports whether the state is the start of a round.
   bool AtRound(std::span<const Word> packed) const { return (packed[0] & 1) == 0 || !team_.has_sensors(); }
 
-  /// What the number of a broken property means.
+  /// Returns what the number of a broken property means.
   Trouble TroubleOf(int property) const;
-  /// Of the last fault or broken summary.
+  /// Describes the last fault or violated summary.
   struct Detail {
     Fault fault = Fault::kNone;
     diag::Span span;
     size_t robot = 0;
-    int event = -1;  ///< -1: initial values
+    int event = -1;  ///< -1: it happened in initial values or `init`
     int summary = -1;
   };
   const Detail& detail() const { return detail_; }
-  /// The environment had no allowed values somewhere: the robot, and the state.
+  /// Returns a robot for whose sensors the assumptions allowed no declared values in some state; nothing if
+  /// there was always one.
   const std::optional<size_t>& stuck() const { return stuck_; }
-  /// Invariants that met an operation without a value in some state: there, they were not checked.
+  /// Returns, by invariant, whether it met an operation without a value in some state; there, it was not
+  /// checked.
   const std::vector<bool>& undefined() const { return undefined_; }
-  /// States that the declarations allow but the assumptions do not.
+  /// Returns how many initial states the declarations allow but the assumptions do not.
   uint64_t refused_initial() const { return refused_; }
 
-  /// A run along packed states, told in full. With symmetry, states are only given up to renaming; the run is
-  /// one of concrete robots. If `broken` is not at the last state, the step that breaks it is added.
+  /// Returns a run along packed states, told in full. With symmetry, these states are only given up to a
+  /// renaming; the run is one of concrete robots. If `broken` is not at the last state, the step that breaks
+  /// it is added. Ends early where a state does not follow from the one before.
   std::vector<Step> Explain(const std::vector<std::vector<Word>>& path, const explore::Broken& broken);
 
   /// Calls `visit` for each step from `state`, told in full, until it returns true.
   void StepFrom(std::span<const Word> state, bool environment, const std::function<bool(const Step&)>& visit);
-  /// Lists what follows `state`, the start of a round, for what breaks on the way.
+  /// Expands `state`, the start of a round, and returns what breaks in the program transition, if anything
+  /// does.
   explore::Broken Try(std::span<const Word> state);
-  /// Is there a moment of the program transition from `state`, complete or not, that `is` it?
+  /// Reports whether `is` accepts some moment of the program transition from `state`, be it complete or not.
   bool HasPrefix(std::span<const Word> state, const std::function<bool(std::span<const Word>)>& is);
 
+  /// Returns the words of a packed state.
   std::vector<Word> Unpack(std::span<const Word> packed) const;
-  /// The first invariant that does not hold, or -1.
+  /// Returns the first invariant that is defined and does not hold in the state; -1 if there is none.
   int Violated(std::span<const Word> state);
 
-  /// By event: in how many expanded states some robot could run it.
+  /// Returns, by event, in how many expanded states some robot could run it.
   const std::vector<uint64_t>& enabled() const { return enabled_; }
 
  private:
@@ -111,6 +128,7 @@ class System {
   std::optional<size_t> stuck_;
   uint64_t refused_ = 0;
   std::vector<uint64_t> enabled_;
+  std::vector<bool> seen_;  // events that are enabled in the state at hand
   std::vector<bool> undefined_;
   std::vector<Word> emitted_;  // the last state, before symmetry
 };

@@ -56,7 +56,10 @@ bool Team::Parameters(const TeamOptions& options, diag::Diagnostics& diagnostics
     std::optional<std::vector<Word>> value;
     const auto fixed = options.params.find(v);
     const auto explored = model_.exploration.values.find(v);
-    if (fixed != options.params.end()) {
+    const auto made = options.made_params.find(v);
+    if (made != options.made_params.end()) {
+      value = made->second(heap_);
+    } else if (fixed != options.params.end()) {
       value = fixed->second;
     } else if (variable.initial.valid()) {
       value = evaluate(variable.initial, variable.type);

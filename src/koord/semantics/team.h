@@ -10,57 +10,67 @@
 #include "koord/semantics/compile/compiler.h"
 #include "koord/semantics/machine/machine.h"
 
+/// Turns a checked Koord program into code for a fixed number of robots, which simulations, explorations and
+/// replays run.
 namespace rondo::koord::semantics {
 
+/// Says where in `Code` the compiled guard and body of an event begin.
 struct EventCode {
   const EventDef* def;
-  uint32_t guard;  ///< 0: always enabled
+  uint32_t guard;  ///< the entry of its `pre`; 0 if it is always enabled
   uint32_t body;
   bool urgent;
-  bool locks;  ///< contains `atomic`
+  bool locks;  ///< its body contains `atomic`
 };
-/// A formula that is evaluated for each robot, or once.
+/// Holds a formula of the specification that is evaluated for each robot if it is about robots, else once.
 struct FormulaCode {
   std::string name;
   diag::Span span;
   uint32_t entry;
   bool per_robot;
 };
-/// A controller assumption: where `when` holds at the end of the program transition, `always` holds until the
-/// next round.
+/// Holds a controller assumption (the paper's (P, Q)): if `when` holds at the end of the program transition,
+/// `always` holds at every moment until the next round.
 struct PromiseCode {
   std::string name;
   diag::Span span;
-  uint32_t when;  ///< 0: always
+  uint32_t when;  ///< the entry of P; 0 if Q holds in any case
   uint32_t always;
 };
+/// Holds the code that sets a variable to its initial value.
 struct InitialCode {
   size_t variable;
   uint32_t entry;
 };
-/// A part of the specification that has no executable form: runs are not checked against it.
+/// Names a part of the specification that has no executable form, so that runs are not checked against it,
+/// and says why.
 struct UncheckedPart {
   std::string name;
   diag::Span span;
   std::string reason;
 };
 
+/// Says what a program is compiled for.
 struct TeamOptions {
   size_t robots = 1;
-  /// Values of parameters, as words, instead of those in the program.
+  /// Gives parameters, by number of the variable, values as words that replace those in the program.
   std::map<size_t, std::vector<Word>> params;
-  /// Values that a variable may take, one after the other, where `explore` declares none.
+  /// Gives variables the values that they may take, one after the other, where neither an initial value nor
+  /// `explore` says so.
   std::map<size_t, std::vector<Word>> choices;
-  /// External functions that the host computes.
+  /// Reports whether the host computes an external function, by its number; empty: it computes none.
   std::function<bool(size_t)> hosted;
+  /// Gives parameters, by number of the variable, values that are made in the team's own heap: lists and texts are
+  /// handles into it.
+  std::map<size_t, std::function<std::vector<Word>(Heap&)>> made_params = {};
 };
 
-/// A program compiled for a fixed number of robots and fixed parameters (Koord paper, Figs. 5 to 9). Points
-/// into the model, which must outlive it.
+/// Holds a program compiled for a fixed number of robots and fixed parameters (Koord paper, Figs. 5 to 9),
+/// with the machine that runs it. Points into the model, which must outlive it.
 class Team {
  public:
-  /// nullptr, after a diagnostic, if the program cannot be executed: a parameter has no value, a function no
-  /// body.
+  /// Compiles the program. Returns nullptr, after a diagnostic, if it cannot be executed: a parameter has no
+  /// value, say, or a function no body.
   static std::unique_ptr<Team> Make(const Model& model, const TeamOptions& options,
                                     diag::Diagnostics& diagnostics);
 
@@ -74,9 +84,11 @@ class Team {
   const std::vector<EventCode>& events() const { return events_; }
   const std::vector<uint32_t>& inits() const { return inits_; }
   const std::vector<InitialCode>& declared() const { return declared_; }
-  /// From `assume initially: v == e`, for variables without a declared value.
+  /// Returns the code of values that follow from `assume initially: v == e`, for variables without a declared
+  /// value.
   const std::vector<InitialCode>& derived() const { return derived_; }
-  /// By variable: the code that pushes the list of values that `explore` declares.
+  /// Returns, by variable, the entry of the code that pushes the list of values that `explore` declares for
+  /// it.
   const std::map<size_t, uint32_t>& choices() const { return choices_; }
   const std::map<size_t, std::vector<Word>>& given_choices() const { return given_choices_; }
   const std::vector<FormulaCode>& invariants() const { return invariants_; }
@@ -86,26 +98,34 @@ class Team {
   const std::vector<PromiseCode>& promises() const { return promises_; }
   const std::vector<UncheckedPart>& unchecked() const { return unchecked_; }
   const std::vector<std::pair<const Stmt*, bool>>& branches() const { return branches_; }
-  /// Variables that have neither a declared nor a derived value, nor choices: they start as zero.
+  /// Returns the variables that have neither a declared nor a derived value, nor choices: they start as zero,
+  /// which a report should say.
   const std::vector<size_t>& zeroed() const { return zeroed_; }
-  /// Is some number in the program no double?
+  /// Reports whether some number in the program is no double and was rounded, so that runs may differ from
+  /// proofs.
   bool rounds_literals() const { return code_.rounded_literals; }
   bool robots_stop() const { return robots_stop_; }
   bool has_sensors() const { return has_sensors_; }
 
-  /// Does the formula hold in the memory that the machine looks at? For every robot, if it is about robots;
-  /// `robot` is then the first for which it does not.
-  /// `defined`: no operation without a value was met on the way.
+  /// Reports whether the formula holds in the memory that the machine looks at: for every robot, if it is
+  /// about robots.
+  /// @param robot  gets the first robot for which it does not hold.
+  /// @param defined  becomes false if an operation without a value was met on the way; the result then says
+  /// nothing about the program.
   bool Holds(const FormulaCode& formula, size_t* robot = nullptr, bool* defined = nullptr);
+  /// Returns the text of a value of log type `type` that a robot wrote to a stream.
   std::string ShowLogged(size_t type, std::span<const Word> value) const;
   TypeId TypeOfVariable(size_t variable) const { return model_.variables[variable].type; }
-  /// A state in which every variable is zero, empty or false.
+  /// Returns a state in which every variable is zero, empty, false or the first member of its enumeration.
   const std::vector<Word>& blank() const { return blank_; }
-  /// The value of a variable in a state, for people.
+  /// Returns the value of a variable in a state as text for people; of the robot's own, if each robot has
+  /// one.
   std::string ShowVariable(std::span<const Word> state, size_t variable, size_t robot) const;
-  /// `x[2]`, `Motion[2].psn`, `sum`
+  /// Returns what reports call a variable of a robot: `x[2]`, `Motion[2].psn`, or `sum` if all robots share
+  /// it.
   std::string NameOf(size_t variable, size_t robot) const;
-  /// Frees the values that none of these states contains.
+  /// Frees the lists and texts of the heap that occur in none of these states and are not pinned. Handles in
+  /// any other state are invalid from then on.
   void Collect(std::span<const std::span<const Word>> states);
 
  private:

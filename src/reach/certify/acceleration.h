@@ -3,6 +3,8 @@
 #include "reach/certify/models/linearise.h"
 #include "reach/certify/step.h"
 
+/// Second derivatives along the flow: with them, the checker tells a touch of an event's boundary from
+/// crossings.
 namespace rondo::reach::certify {
 
 /// Encloses the second derivatives of outputs of `observed` along the flow, per second squared, where states

@@ -7,18 +7,19 @@
 #include "reach/problem/problem.h"
 
 /// The independent checker of reachability proofs. It shares with the engine that finds them what a problem
-/// is and means (`reach/system`) and interval arithmetic (`interval`), nothing else.
+/// is and means (`reach/problem`) and interval arithmetic (`interval`), nothing else.
 namespace rondo::reach::certify {
 
-/// How one part of the initial set was followed.
+/// Records how one part of the initial set was followed.
 struct PartRecord {
-  /// Which half of a side.
+  /// Says which half of a side was taken.
   struct Cut {
-    size_t side;  ///< a state, no copy
+    size_t side;  ///< the index of a state that is no copy of another
     bool upper;
   };
-  /// What was done next.
+  /// Records what was done next.
   struct Step {
+    /// Says what a step does; lengths, events and symbols are given with those that need them.
     enum class Kind : uint8_t {
       kStep,     ///< some time along the flow
       kCross,    ///< all of the set meets an event
@@ -29,26 +30,28 @@ struct PartRecord {
     double length = 0;  ///< seconds; of kCross: until all of the set has met the event
     size_t degree = 0;  ///< of polynomials in the initial state
     Kind kind = Kind::kStep;
-    size_t event = 0;
+    size_t event = 0;     ///< of kCross: which event, by its index in the problem
     double together = 0;  ///< seconds after the event before the set is brought to one instant
-    /// Of kCross: when a start meets the event, in seconds, as a polynomial: exponents by symbol, factor.
+    /// Of kCross: when a start meets the event, in seconds after the step began, as a polynomial in the
+    /// symbols: pairs of exponents (by symbol) and coefficient.
     std::vector<std::pair<std::vector<uint32_t>, double>> time = {};
-    size_t symbol = 0;
+    size_t symbol = 0;  ///< of kSplit: which symbol is halved
   };
   std::vector<Cut> path;    ///< from the whole initial set to the part
   std::vector<Step> steps;  ///< none if nothing in the part satisfies what is assumed
 };
 
-/// What a proof of a problem leaves behind. Nothing in it is believed: its parts must be all of the initial
-/// set, and its steps are what is tried first.
+/// Is what a proof of a problem leaves behind. Nothing in it is believed: its parts must be all of the
+/// initial set (the leaves of one binary tree of cuts), and its steps are what is tried first.
 struct Certificate {
   std::vector<PartRecord> parts;
 };
 
+/// Is the answer of the checker.
 struct Acceptance {
   bool accepted = false;
-  std::string reason;  ///< why not
-  size_t steps = 0;
+  std::string reason;  ///< why the certificate is not accepted; empty if it is
+  size_t steps = 0;    ///< steps of the flow that were shown, over all parts
 };
 
 /// Shows again that every claim of the problem holds on every trajectory that begins in the initial set.

@@ -13,6 +13,7 @@
 #include "reach/certify/observation.h"
 #include "reach/certify/system.h"
 
+/// One part of the initial set, followed by the checker from the start to the horizon.
 namespace rondo::reach::certify {
 
 /// Follows one part of the initial set as its record says, and shows every claim on the way.
@@ -22,14 +23,16 @@ class Follower {
   Follower(System& system, Bases& bases, size_t most_degree, const base::StopToken& stop)
       : system_(system), bases_(bases), most_degree_(most_degree), stop_(stop) {}
 
-  /// Why the claims are not shown; empty if they are.
+  /// Returns why the claims are not shown for all of the part; nothing (an empty text) if they are.
   ///
   /// @param recorded  the part that the steps were recorded for: this one, or a larger one.
   std::string Run(const interval::Box& part, const interval::Box& recorded,
                   const std::vector<PartRecord::Step>& steps);
+  /// Returns how many steps of the flow were shown.
   size_t steps() const { return steps_; }
-  /// After a failure: the side of the part whose halves should be looked at, each on its own, if there is
-  /// one.
+  /// Returns, after a failure, the side of the part whose halves should be looked at, each on its own, if
+  /// there is one: that of the symbol on which the last set depends most, terms that are not linear above
+  /// all.
   std::optional<size_t> WorstSide() const;
 
  private:
@@ -51,11 +54,12 @@ class Follower {
     std::shared_ptr<const ModeSystem> in;  ///< their modes
     size_t instant = 0;                    ///< the last one that was met
     Interval left;                         ///< seconds to the next one
-    bool met = true;                       ///< is it just now?
+    bool met = true;                       ///< whether that is just now
     double carried = 0;                    ///< what is left of a step that was too long
-    bool open = false;                     ///< may events happen in what is left of it?
-    std::vector<std::vector<bool>> falls;  ///< by claim and term: at most zero since the start?
-    std::vector<Scale> recorded;           ///< by symbol
+    bool open = false;                     ///< whether events may happen in what is left of it
+    /// By claim and term: whether it was at most zero ever since the start.
+    std::vector<std::vector<bool>> falls;
+    std::vector<Scale> recorded;  ///< by symbol of the record: what it is in terms of ours
   };
 
   Place Begin(const interval::Box& box, const interval::Box& recorded);
@@ -104,13 +108,13 @@ class Follower {
   size_t most_degree_;
   const base::StopToken& stop_;
   const std::vector<PartRecord::Step>* hints_ = nullptr;
-  bool wanders_ = false;  ///< is there a step among them during which several modes are possible?
-  std::vector<std::optional<size_t>> symbol_;  ///< by state
+  bool wanders_ = false;  ///< whether there is a step among them during which several modes are possible
+  std::vector<std::optional<size_t>> symbol_;  ///< by state: its symbol, if it has one
   size_t next_hint_ = 0;
   size_t symbols_ = 0;
   size_t order_ = 0;
-  ReachSet last_;    ///< where it stopped
-  double time_ = 0;  ///< roughly, for messages
+  ReachSet last_;    ///< where it stopped, for WorstSide
+  double time_ = 0;  ///< how far it is, in seconds: roughly, for messages
   size_t steps_ = 0;
   size_t splits_ = 0;
   size_t forks_ = 0;

@@ -4,25 +4,26 @@
 #include "reach/certify/models/evaluate.h"
 #include "reach/certify/models/reach_set.h"
 
+/// One step of validated integration as the checker does it: by the defect of any polynomial.
 namespace rondo::reach::certify {
 
-/// x' = f(x, w) with inputs w that may change at any time. Variables of the program: states, then inputs;
-/// outputs: the derivatives.
+/// States the differential equation x' = f(x, w), time in seconds, with inputs w that may change at any time.
+/// Variables of the program: states, then inputs; outputs: the derivatives.
 struct Dynamics {
   Program rates;
   size_t states = 0;
-  interval::Box inputs;
+  interval::Box inputs;  ///< bounds of each input
 };
 
-/// How long a step lasts: `length` seconds, or, where there is a polynomial in s, length * (polynomial +-
-/// error).
+/// Says how long a step lasts: `length` seconds, or, where there is a polynomial in s, length * (polynomial
+/// +- error): another time for each start.
 struct Pace {
   double length = 0;
   std::vector<double> polynomial;
   double error = 0;
 };
 
-/// One step of the flow, shown after the fact: any polynomial p(s, t) will do; what it leaves of the equation
+/// Shows one step of the flow after the fact: any polynomial p(s, t) will do; what it leaves of the equation
 /// (its defect, p' - f(p)) and how errors grow is bounded.
 ///
 /// Nothing here is shared with `reach/validated`, which bounds the rest of a Taylor series.
@@ -33,18 +34,20 @@ class Step {
   /// @param order  of p in time.
   Step(const Dynamics& dynamics, size_t order);
 
-  /// Follows all of the set for that long. False if that cannot be shown.
+  /// Follows all of the set for that long. Returns false if that cannot be shown; then the results below mean
+  /// nothing.
   bool Take(const ReachSet& set, const Pace& pace);
 
-  /// Models of the states and inputs during the step, errors included. Time runs from 0 to 1.
+  /// Returns models of the states and inputs during the step, errors included. Time runs from 0 to 1.
   const std::vector<Model>& during() const { return during_; }
   const Algebra& algebra() const { return *algebra_; }
   /// Encloses states and inputs during the step.
   const interval::Box& region() const { return region_; }
   /// Encloses the derivatives during the step, per second.
   const interval::Box& rates() const { return rates_; }
+  /// Returns the set at the end of the step.
   const ReachSet& end() const { return end_; }
-  /// How much of the errors at the end is new, roughly: a step that adds much is too long.
+  /// Returns how much of the errors at the end is new, by state, roughly: a step that adds much is too long.
   const Eigen::VectorXd& added() const { return added_; }
 
  private:

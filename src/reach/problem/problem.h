@@ -6,26 +6,28 @@
 
 #include "reach/problem/program.h"
 
+/// What reachability is asked: dynamics, controller, events, starts and claims. Engines, checker and
+/// simulators agree on nothing but this.
 namespace rondo::reach {
 
-/// Something that happens at the instants 0, period, 2 period, ... before the horizon: the states take new
+/// Is something that happens at the instants 0, period, 2 period, ... before the horizon: the states take new
 /// values, all at once, that are computed from the old ones. Between these instants they follow their rates.
 struct Controller {
-  Rational period;
+  Rational period;  ///< seconds
   /// By state; a state without a value keeps its own.
   std::vector<std::optional<TermId>> updates;
 };
 
-/// An input that changes at any time, in any way (measurably), within its bounds. A controller reads the
+/// Is an input that changes at any time, in any way (measurably), within its bounds. A controller reads the
 /// value that it happens to have at that instant.
 struct Input {
   TermId term;
   Interval bounds;
 };
 
-/// Something that happens as soon as its condition holds: discrete states take new values, all at once. What
-/// events set are discrete states: their rates are zero, they have one value at the start, and what they are
-/// set to depends on discrete states only.
+/// Is something that happens as soon as its condition holds: discrete states take new values, all at once.
+/// What events set are discrete states: their rates are zero, they have one value at the start, and what they
+/// are set to depends on discrete states only.
 ///
 /// An event happens at the first instant at which its condition begins to hold for some time (the infimum, if
 /// there is no first one); other events may follow at the same instant. Where a condition holds for a single
@@ -36,14 +38,15 @@ struct Event {
   std::vector<std::optional<TermId>> updates;
 };
 
-/// What must hold at every instant of [from, to].
+/// Is what must hold at every instant of [from, to], in seconds.
 struct Claim {
   std::string name;
   TermId formula;
   Rational from, to;
 };
 
-/// A controlled system, where it may start, and what must hold along every trajectory that it can take.
+/// States a controlled system, where it may start, and what must hold along every trajectory that it can
+/// take.
 ///
 /// Times are in seconds. `initial` encloses what `assume` allows; the claims must hold for the starts that
 /// satisfy both.
@@ -51,7 +54,7 @@ struct Problem {
   std::string name;
   expr::Arena* arena = nullptr;
   std::vector<TermId> states;
-  std::vector<TermId> rates;  ///< x' by state
+  std::vector<TermId> rates;  ///< x' by state, per second
   std::vector<Input> inputs;
   std::optional<Controller> controller;
   std::vector<Event> events;
@@ -60,12 +63,13 @@ struct Problem {
   std::vector<std::optional<Rational>> pinned;
   /// By state: the state whose initial value it has, too, if there is one. Empty: none has.
   std::vector<std::optional<size_t>> copy_of;
+  /// What every start satisfies: a formula over the states at time 0.
   TermId assume;
-  Rational horizon;
+  Rational horizon;  ///< seconds; nothing is claimed beyond
   std::vector<Claim> claims;
 };
 
-/// What each state is after the controller has acted.
+/// Returns what each state is after the controller has acted.
 inline std::vector<TermId> Updated(const Problem& problem) {
   std::vector<TermId> values = problem.states;
   for (size_t i = 0; problem.controller && i < values.size(); ++i)
@@ -73,7 +77,7 @@ inline std::vector<TermId> Updated(const Problem& problem) {
   return values;
 }
 
-/// How often the controller acts before the horizon.
+/// Returns how often the controller acts before the horizon.
 inline size_t Samples(const Problem& problem) {
   if (!problem.controller) return 0;
   const Rational count = problem.horizon / problem.controller->period;

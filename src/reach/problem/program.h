@@ -14,6 +14,7 @@ using expr::Rational;
 using expr::TermId;
 using interval::Interval;
 
+/// Names the operations of straight-line code. Arguments are numbers of nodes unless said otherwise.
 enum class CodeOp : uint8_t {
   kVariable,    ///< a: index of the variable
   kLinear,      ///< parts from a, b of them, plus a constant
@@ -31,26 +32,28 @@ enum class CodeOp : uint8_t {
   kChoose,  ///< b if a <= 0, else c; which one holds at a = 0 is left open
 };
 
+/// Is one node of a program.
 struct Code {
   CodeOp op;
   uint32_t a = 0, b = 0, c = 0;
 };
 
-/// factor * node; the real factor differs from the double by at most `error`.
+/// Is a summand, factor * node; the real factor differs from the double by at most `error`.
 struct LinearPart {
   double factor;
   double error;
   uint32_t node;
 };
 
-/// Real functions of variables as straight-line code; each distinct subterm is one node, arguments first.
+/// Holds real functions of variables as straight-line code; each distinct subterm is one node, arguments
+/// first.
 struct Program {
   std::vector<TermId> variables;
   std::vector<Code> code;
-  std::vector<LinearPart> parts;
-  std::vector<LinearPart> constants;  ///< by kLinear node: its constant (node: unused); else zero
-  std::vector<uint32_t> variable_nodes;
-  std::vector<uint32_t> outputs;
+  std::vector<LinearPart> parts;         ///< summands of kLinear nodes
+  std::vector<LinearPart> constants;     ///< by kLinear node: its constant (node: unused); else zero
+  std::vector<uint32_t> variable_nodes;  ///< by variable: its node
+  std::vector<uint32_t> outputs;         ///< by function: its node
   /// The first `core` outputs depend only on nodes before this one.
   uint32_t core_end = 0;
   /// By node: the variables that it depends on, ascending.
@@ -67,9 +70,10 @@ struct Program {
 base::Result<Program> Compile(const expr::Arena& arena, std::vector<TermId> variables,
                               const std::vector<TermId>& functions, size_t core = SIZE_MAX);
 
-/// A double near the number, and how far it may be off.
+/// Returns a double next to the number, and how far it may be off. Of two neighbours the one that is nearer
+/// to zero, so that opposite numbers give opposite doubles.
 LinearPart NearestConstant(const Rational& value);
-/// Two neighbouring doubles, or one.
+/// Returns the least interval with double bounds that holds the number: two neighbouring doubles, or one.
 Interval Enclose(const Rational& value);
 
 }  // namespace rondo::reach

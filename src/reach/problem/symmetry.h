@@ -7,14 +7,15 @@
 #include "expr/arena.h"
 #include "expr/rational.h"
 
+/// Symmetries of dynamics and contracts: which parameters of a motion cannot matter.
 namespace rondo::reach {
 
 using expr::TermId;
 
-/// What a change of coordinates has to leave as it is.
+/// States what a change of coordinates has to leave as it is.
 struct Structure {
   expr::Arena* arena = nullptr;
-  /// States and parameters that the change may move; whatever else occurs stays where it is.
+  /// Is a state or parameter that the change may move; whatever else occurs stays where it is.
   struct Coordinate {
     TermId term;
     size_t kind = 0;         ///< only coordinates of one kind mix: what they measure
@@ -27,15 +28,15 @@ struct Structure {
   std::vector<TermId> invariant;                 ///< terms whose values must not change
 };
 
-/// Parameters that do not matter, and what moves with them.
+/// Holds parameters that do not matter, and what moves with them.
 struct Removable {
   std::vector<size_t> parameters;  ///< coordinates that may be given any value
   std::vector<size_t> moved;       ///< all coordinates that are moved by that
 };
 
-/// The parameters that affine changes of coordinates take to any value while they leave the structure as it
-/// is: whatever is shown for one value of them (all at once) holds for each. Translations and turns (yaw) are
-/// such changes; which variables they move is found, not told.
+/// Returns the parameters that affine changes of coordinates take to any value while they leave the structure
+/// as it is: whatever is shown for one value of them (all at once) holds for each. Translations and turns
+/// (yaw) are such changes; which variables they move is found, not told.
 ///
 /// The infinitesimal symmetries g(s) = A s + b satisfy linear equations with rational coefficients: [f, g] =
 /// 0 for rates f, g(F(s)) = DF(s) g(s) for updates F, Dh(s) g(s) = 0 for invariant terms h, as polynomials in

@@ -8,6 +8,7 @@
 #include "reach/problem/formula.h"
 #include "reach/problem/problem.h"
 
+/// Many simulated runs at once, for statistics.
 namespace rondo::reach {
 
 /// Runs eight starts of a problem at once, by fourth-order Runge-Kutta, and says which of them break a claim
@@ -17,11 +18,11 @@ class BatchJudge {
  public:
   static constexpr size_t kLanes = 8;
 
-  /// @error if the problem cannot be evaluated.
+  /// Compiles the problem, which must outlive the result. @error if the problem cannot be evaluated.
   static base::Result<BatchJudge> Of(const Problem& problem);
 
-  /// failed[i] for each of at most kLanes starts; a start that is not assumed cannot fail, a run that is not
-  /// finite does.
+  /// Judges at most kLanes starts: failed[i] for each. A start that is not assumed cannot fail, a run that is
+  /// not finite does. `dt` in seconds.
   void Run(std::span<const std::vector<double>> starts, double dt, size_t steps, std::span<bool> failed);
 
  private:

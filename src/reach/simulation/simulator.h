@@ -8,39 +8,41 @@
 #include "base/result.h"
 #include "reach/problem/numeric.h"
 
+/// What can be run, and how: models, programs and libraries of the user's.
 namespace rondo::reach {
 
-/// States of one run at the instants 0, dt, 2 dt, ...: one row of `dimension` numbers for each.
+/// Holds the states of one run at the instants 0, dt, 2 dt, ...: one row of `dimension` numbers for each.
 using Trace = std::vector<double>;
 
-/// Something that can be run from a start: a model, or a black box. Nothing is known of it but its runs.
+/// Is something that can be run from a start: a model, or a black box. Nothing is known of it but its runs.
 class Simulator {
  public:
   Simulator() = default;
   Simulator(const Simulator&) = delete;
   Simulator& operator=(const Simulator&) = delete;
   virtual ~Simulator() = default;
+  /// Returns the number of states.
   virtual size_t dimension() const = 0;
-  /// `steps` + 1 rows, `dt` seconds apart.
+  /// Runs it once and returns `steps` + 1 rows, `dt` seconds apart, of which the first is the start.
   ///
   /// @error if the run ends early or its numbers are not finite.
   virtual base::Result<Trace> Run(std::span<const double> start, double dt, size_t steps) = 0;
 };
 
-/// A problem as a simulator: fourth-order Runge-Kutta with `substeps` in each step, inputs in the middle of
-/// their bounds. Many of them may run at once.
+/// Returns a problem as a simulator: fourth-order Runge-Kutta with `substeps` in each step, inputs in the
+/// middle of their bounds. Many of them may run at once.
 ///
 /// @error if the problem cannot be evaluated, or has events.
 base::Result<std::unique_ptr<Simulator>> SimulatorOf(const Problem& problem, size_t substeps = 1);
 
-/// A program of the user's. For each run one line is written to its standard input: the number of steps, dt,
-/// and the start; it answers with steps + 1 lines, the state at each instant. It is started once and ends
-/// when its input does.
+/// Returns a program of the user's. For each run one line is written to its standard input: the number of
+/// steps, dt in seconds, and the start; it answers with steps + 1 lines, the state at each instant. It is
+/// started once and ends when its input does.
 ///
 /// @error if it cannot be started.
 base::Result<std::unique_ptr<Simulator>> ProcessSimulator(const std::string& command, size_t dimension);
 
-/// A shared library of the user's with the function of rondo_simulator.h.
+/// Returns a shared library of the user's with the function of rondo_simulator.h.
 ///
 /// @error if it cannot be loaded or lacks the function.
 base::Result<std::unique_ptr<Simulator>> LibrarySimulator(const std::string& path, size_t dimension);

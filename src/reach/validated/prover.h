@@ -10,89 +10,94 @@
 #include "reach/validated/flow/flow.h"
 #include "verdict/verdict.h"
 
+/// The engine of reachability: proofs by tubes, refutations by trajectories.
 namespace rondo::reach {
 
-/// One stretch of time of one part of the initial set, with boxes that enclose the states during it.
+/// Is one stretch of time of one part of the initial set, with a box that encloses the states during it.
 struct TubeSegment {
-  double from = 0, to = 0;
+  double from = 0, to = 0;  ///< seconds
   interval::Box during;
 };
 
-/// Which half of a side of the initial set.
+/// Says which half of a side of the initial set was taken.
 struct Cut {
-  size_t side = 0;  ///< a state, no copy
-  bool upper = false;
+  size_t side = 0;     ///< the index of a state that is no copy of another
+  bool upper = false;  ///< the upper half, not the lower one
 };
 
-/// One thing that was done to follow a part, in order.
+/// Records one thing that was done to follow a part, in order.
 struct StepRecord {
+  /// Says what was done.
   enum class Kind : uint8_t {
-    kStep,
+    kStep,   ///< some time along the flow, in one mode
     kCross,  ///< all of the set meets an event
     kSplit,  ///< into the halves of a symbol: first all about the lower one, then all about the upper one
     kOpen,   ///< a step during which several modes are possible, or one of several that are followed alone
   };
   Kind kind = Kind::kStep;
-  double length = 0;  ///< seconds; of kCross: within which all of the set meets the event
-  size_t degree = 0;  ///< of polynomials
-  size_t event = 0;
+  double length = 0;    ///< seconds; of kCross: within which all of the set meets the event
+  size_t degree = 0;    ///< of polynomials
+  size_t event = 0;     ///< of kCross: which event, by its index in the problem
   double together = 0;  ///< seconds that the set goes on after the event before it is brought to one instant
   /// Of kCross: when a start meets the event, in seconds; coefficients with their monomials' exponents.
   std::vector<std::pair<std::vector<uint8_t>, double>> time = {};
-  size_t symbol = 0;
+  size_t symbol = 0;  ///< of kSplit: which symbol is halved
 };
 
-/// A part of the initial set for which every claim was shown, and how.
+/// Is a part of the initial set for which every claim was shown, and how.
 struct Leaf {
   interval::Box initial;
-  std::vector<Cut> path;  ///< from the whole initial set to this part
-  std::vector<TubeSegment> tube;
-  interval::Box final;
+  std::vector<Cut> path;          ///< from the whole initial set to this part
+  std::vector<TubeSegment> tube;  ///< by time; empty unless `ProverOptions::keep_tube`
+  interval::Box final;            ///< encloses the states at the horizon
   std::vector<StepRecord> steps;
 };
 
+/// Says that every claim holds, part by part: leaves and empty parts together are all of the initial set.
 struct Proved {
   std::vector<Leaf> leaves;
   std::vector<std::vector<Cut>> empty;  ///< parts in which nothing satisfies what is assumed
-  size_t steps = 0;
+  size_t steps = 0;                     ///< of the flow, over all leaves
 };
 
-/// A trajectory on which a claim fails; enclosed rigorously at that time if `certain`.
+/// Is a trajectory on which a claim fails; enclosed rigorously at that time if `certain`.
 struct Refuted {
   Execution execution;
   Violation violation;
   bool certain = false;
 };
 
-/// Neither.
+/// Says that the claims were neither proved nor refuted.
 struct Undecided {
   std::string reason;  ///< for people
   verdict::Shortfall shortfall = verdict::Shortfall::kMethod;
   /// How near the claims came to failing, by samples: negative is inside.
   std::optional<Violation> closest;
-  std::vector<Leaf> leaves;
+  std::vector<Leaf> leaves;  ///< the parts for which they were proved nevertheless
 };
 
+/// Is what became of a problem.
 using Outcome = std::variant<Proved, Refuted, Undecided>;
 
 /// Returns the word for it: proved, refuted or unknown.
 verdict::Verdict VerdictOf(const Outcome& outcome);
 
+/// Says how much effort goes into a problem.
 struct ProverOptions {
   FlowOptions flow;
-  size_t most_leaves = 2000;
-  size_t samples = 200;  ///< trajectories that look for a violation first
-  uint64_t seed = 1;
-  unsigned jobs = 0;
-  bool keep_tube = true;
-  /// Called now and then with the parts that are done and open.
+  size_t most_leaves = 2000;  ///< parts; with more, the problem stays undecided
+  size_t samples = 200;       ///< trajectories that look for a violation first
+  uint64_t seed = 1;          ///< of the trajectories that look for a violation
+  unsigned jobs = 0;          ///< threads; 0: as many as the machine has cores
+  bool keep_tube = true;      ///< whether leaves keep their boxes, for pictures
+  /// Called now and then with the number of parts that are done and of those that are open.
   std::function<void(size_t, size_t)> progress;
 };
 
-/// What a term can be during an interval of time.
+/// Asks what a term can be during an interval of time, in seconds.
 struct Query {
   TermId term;
-  double from = 0, to = 0;
+  double from = 0, to = 0;  ///< seconds
 };
 
 /// Encloses the values of terms over the states and inputs on every trajectory that a proof is about, each
@@ -105,7 +110,7 @@ base::Result<std::vector<Interval>> RangesOn(const Problem& problem, const Prove
                                              const base::StopToken& stop);
 
 /// Decides whether every claim of the problem holds on every trajectory. Proofs are rigorous; a refutation is
-/// a trajectory.
+/// a trajectory, and rigorous only if it is `certain`.
 ///
 /// @error if the problem uses what has no derivative (integers, uninterpreted functions).
 base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& options,

@@ -9,17 +9,18 @@
 #include "verdict/truth.h"
 #include "verdict/verdict.h"
 
+/// One part of the initial set, followed by the engine from the start to the horizon.
 namespace rondo::reach {
 
-/// What came of one part of the initial set.
+/// Tells what came of one part of the initial set.
 struct Attempt {
   bool proved = false;
-  bool vacuous = false;  ///< nothing in it satisfies what is assumed
+  bool vacuous = false;  ///< nothing in the part satisfies what is assumed
   Leaf leaf;
   std::string reason;  ///< why not, if it is not proved
   verdict::Shortfall shortfall = verdict::Shortfall::kMethod;
-  double time = 0;
-  size_t claim = 0;
+  double time = 0;            ///< at which it failed, in seconds
+  size_t claim = 0;           ///< which could not be shown, if it was a claim
   size_t split = 0;           ///< the state whose side should be halved
   std::vector<double> worst;  ///< a start that seemed worst
 };
@@ -34,14 +35,16 @@ class Runner {
   Runner(Stages& stages, const ProverOptions& options, const FlowOptions& flow, const interval::Box& box,
          const interval::Box& whole, const base::StopToken& stop);
 
+  /// Proves the claims for this part, or says why that failed.
   Attempt Run();
-  /// Instead of proving: does the claim certainly fail at this time for all of the set?
+  /// Reports, instead of proving, whether the claim certainly fails at this time (seconds) for all of the
+  /// set.
   bool Breaks(size_t claim, double time);
-  /// Instead: what the queries can be; nothing if the set cannot be followed.
+  /// Encloses, instead of proving, what the queries can be; nothing if the set cannot be followed.
   std::optional<std::vector<Interval>> Ask(const std::vector<Query>& queries);
 
  private:
-  // A mode that is possible, and what is known of the terms of its events.
+  /// A mode that is possible, and what is known of the terms of its events.
   struct Possible {
     Mode mode;
     std::set<TermId> rising;  ///< terms that do not fall any more while their second derivative is positive
@@ -56,8 +59,8 @@ class Runner {
     size_t sample = 0;    ///< of the controller, the next one
     size_t halvings = 0;  ///< of a symbol, at events
     size_t rounds = 0;    ///< of events at this instant
-    bool look = true;     ///< for events at this instant?
-    bool begun = false;   ///< have the claims been looked at at the start?
+    bool look = true;     ///< whether to look for events at this instant
+    bool begun = false;   ///< whether the claims have been looked at at the start
   };
   enum class Next : uint8_t { kFailed, kChanged, kFork, kNo, kDone };
 
@@ -105,12 +108,13 @@ class Runner {
   const interval::Box& whole_;
   const base::StopToken& stop_;
   double horizon_;
-  bool claims_ = true;            ///< are they to be looked at?
+  bool claims_ = true;            ///< whether they are to be looked at
   std::optional<size_t> broken_;  ///< else: the one that should fail at the horizon
   const std::vector<Query>* queries_ = nullptr;
   std::vector<Interval> answers_;
   std::vector<int> symbol_of_;
-  std::vector<std::vector<bool>> falls_;  ///< by claim of the stage and term: still below zero?
+  /// By claim of the stage and term: whether it has stayed below zero since the start.
+  std::vector<std::vector<bool>> falls_;
   std::shared_ptr<Monomials> monomials_;
   Attempt attempt_;
   std::optional<State> earlier_;  ///< where the step before began

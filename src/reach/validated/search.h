@@ -8,9 +8,11 @@
 #include "reach/validated/flow/stage.h"
 #include "reach/validated/prover.h"
 
+/// The search for trajectories that break a claim.
 namespace rondo::reach {
 
-/// Looks for a trajectory that breaks a claim: corners, middles of faces, points at random.
+/// Looks for a trajectory that breaks a claim: from corners of the initial set and from points at random,
+/// with inputs at their bounds.
 class Search {
  public:
   Search(Stages& stages, const ProverOptions& options, Trajectories& trajectories,
@@ -24,12 +26,15 @@ class Search {
     FindEquations();
   }
 
-  /// Of so many starts.
+  /// Tries so many starts: corners among the first half of them, points at random else. Returns the first
+  /// refutation; nothing if there is none, or if it was stopped.
   std::optional<Refuted> Run(size_t samples);
-  /// From here, if it is a start.
+  /// Tries the trajectory from this start, if what is assumed certainly allows it. A violation counts if it
+  /// could be enclosed (`certain`), or if it comes again when it is computed more finely.
   std::optional<Refuted> Try(std::vector<double> start);
 
-  /// How near any trajectory came that broke nothing.
+  /// Returns the violation that was nearest to happening, over all trajectories that broke nothing; nothing
+  /// if there was none.
   const std::optional<Violation>& closest() const { return closest_; }
 
  private:
@@ -44,7 +49,8 @@ class Search {
   interval::Box StartBox(const std::vector<double>& start) const;
   bool Confirm(const Refuted& refuted);
   bool ConfirmWithEvents(const Refuted& refuted);
-  /// `margin`: misses that were passed over.
+  /// Reports whether a violation that could not be enclosed comes again with finer steps. `margin`: misses up
+  /// to this are passed over.
   bool Repeats(const Refuted& refuted, double margin);
 
   const Problem& problem_;

@@ -6,18 +6,20 @@
 
 #include "lang/syntax_tree.h"
 
-/// The syntax of robot types and worlds, common to all languages that move robots (docs/motion.md).
+/// Represents the syntax of robot types and worlds, common to all languages that move robots
+/// (docs/motion.md). Ids of expressions that are absent are invalid; names that are absent are empty.
 namespace rondo::robot {
 
 using lang::ExprId;
 
+/// Holds a name and where it stands.
 struct Name {
   std::string text;
   diag::Span span;
 };
 
-/// `T : time = 5 s` or `d : length in [0, 1 m]`: a parameter of a robot or motion. Everything but the name
-/// may be missing.
+/// Represents a parameter of a robot or motion: `T : time = 5 s` or `d : length in [0, 1 m]`. Everything but
+/// the name may be missing.
 struct Param {
   Name name;
   Name dimension;  ///< empty if it is not stated
@@ -25,12 +27,13 @@ struct Param {
   ExprId least, most;  ///< of a motion: what values it may have
 };
 
+/// Represents the parameters of one line.
 struct ParamGroup {
   diag::Span span;
   std::vector<Param> params;
 };
 
-/// `state x, y : length in [-10 m, 10 m]`, and the same for `input`, `memory` and `output`.
+/// Represents `state x, y : length in [-10 m, 10 m]`, and the same for `input`, `memory` and `output`.
 struct StateGroup {
   diag::Span span;
   Name keyword;
@@ -39,45 +42,46 @@ struct StateGroup {
   ExprId least, most;  ///< may be missing
 };
 
-/// `frame base = self * rotate_z(c)` or `mount top = ...`.
+/// Represents `frame base = self * rotate_z(c)` or `mount top = ...`.
 struct FrameDef {
   Name keyword;
   Name name;
   ExprId value;
 };
 
-/// `body cylinder(base, 0.1 m, 0.2 m)` or `hull ...`.
+/// Represents `body cylinder(base, 0.1 m, 0.2 m)` or `hull ...`.
 struct ShapeDef {
   Name keyword;
   ExprId value;
 };
 
-/// `port target = (tx, ty, tz)`: what a program calls a part of the state, or inputs that it sets.
+/// Represents `port target = (tx, ty, tz)`: what a program calls a part of the state, or inputs that it sets.
 struct PortDef {
   Name name;
   ExprId value;
 };
 
-/// `x' = v * cos(theta)`
+/// Represents a law such as `x' = v * cos(theta)`.
 struct Derivative {
   Name variable;
   ExprId value;
 };
 
+/// Represents the dynamics of a robot: the rate of each state, per second.
 struct DynamicsDef {
   diag::Span span;
   std::vector<Derivative> derivatives;
 };
 
-/// `when x >= -100 m { phase = 1 }`: what happens as soon as a condition holds.
+/// Represents `when x >= -100 m { phase = 1 }`: what happens as soon as a condition holds.
 struct WhenDef {
   diag::Span span;
   ExprId condition;
   std::vector<Derivative> updates;
 };
 
-/// `control every 20 ms { vx = ...; sum = ... }`: how inputs and memory are set; without a period, at all
-/// times.
+/// Represents `control every 20 ms { vx = ...; sum = ... }`: how inputs and memory are set; without a period,
+/// at all times.
 struct ControlDef {
   diag::Span span;
   ExprId period;  ///< may be missing
@@ -85,15 +89,15 @@ struct ControlDef {
   std::vector<WhenDef> events;
 };
 
-/// One line of a contract: `pre`, `assume`, `during`, `post`, `footprint`, `region`, `guarantee` with an
-/// expression, or `modifies` with names.
+/// Represents one line of a contract: `pre`, `assume`, `during`, `post`, `footprint`, `region`, `guarantee`
+/// with an expression, or `modifies` with names.
 struct Clause {
   Name keyword;
   std::vector<Name> names;
   ExprId value;
 };
 
-/// `motion Move(d : length, T = 5 s) noninterruptible [T, T] { ... }`
+/// Represents `motion Move(d : length, T = 5 s) noninterruptible [T, T] { ... }`.
 struct MotionDef {
   diag::Span span;
   Name name;
@@ -107,20 +111,21 @@ struct MotionDef {
 using RobotItem =
     std::variant<ParamGroup, StateGroup, FrameDef, ShapeDef, PortDef, DynamicsDef, ControlDef, MotionDef>;
 
+/// Represents a robot type: its parts in the order of the source.
 struct RobotDef {
   diag::Span span;
   Name name;
   std::vector<RobotItem> items;
 };
 
-/// `d = 2 m`, or an argument without a name.
+/// Represents `d = 2 m`, or an argument without a name.
 struct Argument {
   Name name;
   ExprId value;
 };
 
-/// `cart: Cart(height = 9 cm) at (0 m, 0 m, 0 m)`, or `arm: Moveo on cart.top`. Without either it stands at
-/// the origin.
+/// Represents a robot of a world: `cart: Cart(height = 9 cm) at (0 m, 0 m, 0 m)`, or `arm: Moveo on
+/// cart.top`. Without either it stands at the origin.
 struct Component {
   Name name;
   Name type;
@@ -129,18 +134,19 @@ struct Component {
   Name parent, mount;          ///< `on`; empty if it stands in the world
 };
 
-/// `obstacle wall: box(world, (0 m, 0 m, 0 m), (1 m, 2 m, 1 m))`
+/// Represents `obstacle wall: box(world, (0 m, 0 m, 0 m), (1 m, 2 m, 1 m))`.
 struct ObstacleDef {
   Name name;
   ExprId shape;
 };
 
-/// `environment wind { output gust : speed in [-1 m/s, 1 m/s] }`
+/// Represents `environment wind { output gust : speed in [-1 m/s, 1 m/s] }`.
 struct EnvironmentDef {
   Name name;
   std::vector<StateGroup> outputs;
 };
 
+/// Represents a world: robots, obstacles and the environment.
 struct WorldDef {
   diag::Span span;
   Name name;

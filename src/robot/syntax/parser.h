@@ -5,6 +5,7 @@
 #include "lang/expr_parser.h"
 #include "robot/syntax/ast.h"
 
+/// Shares the parser of robot types and worlds.
 namespace rondo::robot {
 
 /// Reads robot types and worlds. Languages that contain them derive their parsers from it.
@@ -15,15 +16,16 @@ class Parser : public lang::ExprParser {
   using ExprParser::ExprParser;
 
  protected:
+  /// Reads a name; `what` says in messages what it should name.
   Name ParseName(std::string_view what);
-  /// Behind `robot` and `world`, up to the closing brace.
+  /// Reads a robot type or a world behind the word `robot` or `world`, up to the closing brace.
   std::optional<RobotDef> ParseRobot(diag::Span start);
   std::optional<WorldDef> ParseWorld(diag::Span start);
-  /// `(a, b = 2 m)`
+  /// Reads arguments such as `(a, b = 2 m)`.
   std::vector<Argument> ParseArguments(std::string_view after);
-  /// A keyword that stands next, and the expression behind it.
+  /// Reads a keyword that stands next, and the expression or names behind it.
   Clause ParseClause();
-  /// Behind the end of a block whose `{` was read, over blocks inside.
+  /// Skips to behind the end of a block whose `{` was read, over blocks inside.
   void SkipToClose();
   bool IsUnit(std::string_view word) const override;
 
@@ -43,7 +45,7 @@ class Parser : public lang::ExprParser {
   void ParseEnvironment(WorldDef& world);
 };
 
-/// Words that begin the parts of robots and worlds everywhere, so that they name nothing.
+/// Reports whether the word begins a part of robots or worlds everywhere, so that it names nothing.
 bool IsRobotWord(std::string_view word);
 
 }  // namespace rondo::robot

@@ -8,17 +8,20 @@
 #include "robot/syntax/ast.h"
 #include "robot/values/value.h"
 
+/// Evaluates expressions about robots.
 namespace rondo::robot {
 
-/// The names that an expression may use. Inner scopes hide outer ones.
+/// Holds the names that an expression may use. Inner scopes hide outer ones, which must outlive them.
 struct Scope {
   const Scope* outer = nullptr;
   Members names;
 
+  /// Returns the value of a name, also from outer scopes; nullptr if it is not in scope.
   const Value* Find(std::string_view name) const;
 };
 
-/// A parameter of robots or their motions that may have any value between two bounds instead of its own.
+/// Names a parameter of robots or their motions that may have any value between two bounds instead of its
+/// own.
 struct Loose {
   std::string name;
   expr::Rational least, most;  ///< in SI units
@@ -29,19 +32,23 @@ struct Loose {
 /// that are not in scope as `choreo-undeclared`. The result of what was reported is kError.
 class Evaluator {
  public:
-  /// `loose`: outlives it, if there is one.
+  /// Evaluates expressions of `pool` to terms of `arena`. `loose` outlives it, if there is one.
   Evaluator(Arena& arena, const lang::ExprPool& pool, diag::Diagnostics& diagnostics,
             const Loose* loose = nullptr)
       : arena_(arena), pool_(pool), diagnostics_(diagnostics), loose_(loose) {}
 
+  /// Returns the value of an expression under the names of `scope`.
   Value Evaluate(ExprId expr, const Scope& scope);
-  /// Of a formula; true if it is missing or was reported.
+  /// Returns the term of a formula; true if it is missing or was reported.
   TermId Formula(ExprId expr, const Scope& scope, std::string_view what);
-  /// Of a quantity with this dimension.
+  /// Returns the term of a quantity with this dimension, in SI units; nothing after a report.
   std::optional<TermId> Measure(ExprId expr, const Scope& scope, lang::Dimension dimension,
                                 std::string_view what);
+  /// Returns the shape that an expression means; nothing after a report. `what` says in messages what it is
+  /// for.
   std::optional<Shape> ShapeAt(ExprId expr, const Scope& scope, std::string_view what);
-  /// Where something stands: a frame, or coordinates in `base`.
+  /// Returns where something stands: the expression is a frame, or coordinates in `base`. Nothing after a
+  /// report.
   std::optional<Pose> Place(ExprId expr, const Scope& scope, const Pose& base);
 
   Arena& arena() { return arena_; }
@@ -50,8 +57,10 @@ class Evaluator {
   const Loose* loose() const { return loose_; }
   diag::Span SpanOf(ExprId expr) const { return pool_[expr].span; }
 
-  /// Do two values measure the same? If one fits to everything, it takes the dimension of the other.
+  /// Reports whether two values measure the same. If one fits to everything, it takes the dimension of the
+  /// other.
   static bool Agree(Value& a, Value& b);
+  /// Reports a value of the wrong dimension or kind, and returns kError.
   Value WrongUnit(diag::Span span, const Value& got, std::string_view wanted);
   Value WrongType(diag::Span span, const Value& got, std::string_view wanted);
 

@@ -2,13 +2,16 @@
 
 #include "robot/values/evaluate.h"
 
+/// Evaluates the functions of expressions about robots. `kTable` in its sources is the list of them.
 namespace rondo::robot {
 
-/// The functions that expressions about robots may call; docs/motion.md lists them.
+/// Evaluates calls of the functions that expressions about robots may use; docs/motion.md lists them.
 class Functions {
  public:
   explicit Functions(Evaluator& evaluator) : e_(evaluator), arena_(evaluator.arena_) {}
 
+  /// Returns the value of a call; kError after a report: no such function, wrong number, kinds or units of
+  /// arguments.
   Value Call(const lang::Expr& call, const Scope& scope);
 
  private:
@@ -37,7 +40,7 @@ class Functions {
   TermId Number(const expr::Rational& value) { return arena_.Number(arena_.Real(), value); }
   static Vector XYZ(const Value& v);
   bool Below(TermId a, TermId b);
-  /// The shape, unless it has no points.
+  /// Returns the shape as a value, unless it has no points for certain, which is reported.
   Value Solid(const Arguments& args, Shape shape);
   Value Norm(const std::vector<TermId>& v, lang::Dimension dimension);
 

@@ -4,8 +4,10 @@
 
 #include "robot/values/pose.h"
 
+/// Represents shapes of robots and obstacles as sets of points.
 namespace rondo::robot {
 
+/// Names the kinds of shapes and what their sizes mean, in metres in the frame of the shape.
 enum class ShapeKind : uint8_t {
   kSphere,        ///< sizes: radius
   kCylinder,      ///< sizes: radius, from z, to z
@@ -14,31 +16,31 @@ enum class ShapeKind : uint8_t {
   kPrism,         ///< sizes: from z, to z; faces
   kHalfSpace,     ///< the set below one face
   kHalfSphere,    ///< sizes: radius; the part of the sphere below one face through its centre
-  kUnion,         ///< of the parts; empty without any
-  kIntersection,  ///< of the parts
+  kUnion,         ///< the points of any part; empty without parts
+  kIntersection,  ///< the points that all parts have in common
 };
 
-/// n . v <= offset; `length` is the norm of n.
+/// Represents the half-space n . v <= offset, v in the frame of the shape; `length` is the norm of n.
 struct Face {
   Vector normal;
   TermId offset;
   TermId length;
 };
 
-/// A closed set of points, in coordinates of its frame.
+/// Represents a closed set of points, in coordinates of its frame.
 struct Shape {
   ShapeKind kind = ShapeKind::kUnion;
-  Pose frame;  ///< X_WS
+  Pose frame;  ///< X_WS: where the frame of the shape is in the world
   std::vector<TermId> sizes;
   std::vector<Face> faces;
   std::vector<Shape> parts;
 };
 
-/// Does the shape contain the point of the world? Exact.
+/// Returns the formula that the shape contains the point of the world. Exact.
 TermId Contains(Arena& arena, const Shape& shape, const Vector& p);
 
-/// Contains every point that is no farther than `margin` (>= 0) from a point of the shape; may contain more
-/// at edges. An intersection of parts is widened part by part.
+/// Returns a shape that contains every point that is no farther than `margin` (>= 0, metres) from a point of
+/// the shape; it may contain more at edges. An intersection of parts is widened part by part.
 Shape Inflate(Arena& arena, const Shape& shape, TermId margin);
 
 }  // namespace rondo::robot

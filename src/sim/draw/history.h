@@ -8,14 +8,15 @@
 #include "sim/bodies/body.h"
 #include "trace/ros.h"
 
+/// Reads traces of simulations for pictures and replays.
 namespace rondo::sim {
 
-/// What a trace of a simulation tells, as far as pictures need it.
+/// Holds what a trace of a simulation tells, as far as pictures need it.
 struct History {       // NOLINT(bugprone-exception-escape): moving JSON checks itself
   nlohmann::json run;  ///< the record `/rondo/run`
   struct Robot {
     std::string name;
-    double radius = 0;
+    double radius = 0;                            ///< metres
     std::vector<std::pair<double, Point>> poses;  ///< time in seconds, position
   };
   std::vector<Robot> robots;
@@ -24,14 +25,15 @@ struct History {       // NOLINT(bugprone-exception-escape): moving JSON checks 
     nlohmann::json event;
   };
   std::vector<Event> events;
-  trace::Grid map;                               ///< the last one; no cells if there is none
-  std::vector<std::pair<double, size_t>> known;  ///< known cells of the map over time
+  trace::Grid map;                               ///< the last map of the trace; no cells if there is none
+  std::vector<std::pair<double, size_t>> known;  ///< (seconds, known cells of the map then)
 };
 
-/// The text that a record has under this key; empty if it has none.
+/// Returns the text that a record has under this key; empty if it has none.
 std::string TextOf(const nlohmann::json& record, const char* key);
 
-/// @error if the bytes are no trace of Rondo's simulator.
+/// Reads the bytes of a trace (MCAP).
+/// @error if they are no trace of Rondo's simulator.
 base::Result<History> ReadHistory(std::string_view bytes);
 
 }  // namespace rondo::sim

@@ -5,14 +5,15 @@
 #include "sim/draw/history.h"
 #include "sim/world/world.h"
 
-/// Pictures of a run, as SVG.
+/// Draws pictures of a run, as SVG.
 namespace rondo::sim {
 
-/// From above: obstacles, the paths of the robots, where they began and ended, where they touched.
+/// Draws the run from above: obstacles, the paths of the robots, where they began and ended, where they
+/// touched.
 std::string DrawPaths(const History& history, const World& world);
-/// The least distance of two robots, and of each robot to its nearest obstacle, over time.
+/// Draws the least distance of two robots, and of each robot to its nearest obstacle, over time.
 std::string DrawDistances(const History& history, const World& world);
-/// The map that the robots drew, with the obstacles as they are.
+/// Draws the last map of the robots, with the obstacles as they are.
 std::string DrawMap(const History& history, const World& world);
 
 }  // namespace rondo::sim

@@ -180,8 +180,10 @@ class Reader {
     fleet_.monitor = Number(t, "monitor", fleet_.monitor, 1e-5, 1e4);
     fleet_.pose_rate = Number(t, "pose_rate", fleet_.pose_rate, 0.001, 1000);
     fleet_.skip = Number(t, "skip", fleet_.skip, 0, 1);
-    fleet_.until = Word(t, "until", "", {"mapped", "stopped"});
-    if (const toml::node* until = t.get("until")) fleet_.until_span = At(*until);
+    const std::string until = Word(t, "until", "", {"mapped", "stopped"});
+    if (until == "mapped") fleet_.until = Until::kMapped;
+    if (until == "stopped") fleet_.until = Until::kStopped;
+    if (const toml::node* node = t.get("until")) fleet_.until_span = At(*node);
     if (Word(t, "integrator", "rk4", {"rk4", "adaptive"}) == "adaptive")
       fleet_.integrator = Integrator::kAdaptive;
     const std::string policy = Word(t, "policy", "first", {"first", "random", "round_robin"});

@@ -10,14 +10,17 @@
 #include "sim/bodies/body.h"
 #include "sim/world/world.h"
 
+/// Reads fleets: which robots a simulation has, where they are, and how it runs.
 namespace rondo::sim {
 
+/// Names how robots and events are chosen in each round.
 enum class Policy : uint8_t {
   kFirst,       ///< the first enabled event in the text; robots in the order of their numbers
   kRandom,      ///< any enabled event; robots in any order
   kRoundRobin,  ///< events and robots take turns
 };
 
+/// Describes one robot of the fleet.
 struct FleetRobot {
   std::string name;
   std::string model;
@@ -27,46 +30,54 @@ struct FleetRobot {
   diag::Span span;
 };
 
+/// Describes the scanner that every robot carries.
 struct Lidar {
-  double range = 10;      ///< m
-  int beams = 360;        ///< over the full turn
-  double rate = 10;       ///< Hz
-  double noise = 0;       ///< standard deviation, m
-  double resolution = 0;  ///< m; 0: none
+  double range = 10;      ///< how far it sees, metres
+  int beams = 360;        ///< how many rays a scan has, over the full turn
+  double rate = 10;       ///< scans per second
+  double noise = 0;       ///< the standard deviation of its distances, metres
+  double resolution = 0;  ///< its distances are multiples of this, metres; 0: they are not rounded
 };
 
-/// A value of the program that the fleet file gives.
+/// Holds a value that the fleet file gives to a parameter or variable of the program.
 struct FleetValue {  // NOLINT(bugprone-exception-escape): moving JSON checks itself
   nlohmann::json value;
   diag::Span span;
 };
 
-/// The robots, their world, and how a simulation runs. Lengths in metres, times in seconds, angles in
+/// Names what ends a run before its time is over.
+enum class Until : uint8_t {
+  kTime,     ///< nothing but that every robot stopped, as for kStopped
+  kMapped,   ///< the shared map is complete
+  kStopped,  ///< every robot stopped
+};
+
+/// Holds the robots, their world, and how a simulation runs. Lengths in metres, times in seconds, angles in
 /// radians.
 struct Fleet {
-  double delta = 0.1;  ///< length of a round
+  double delta = 0.1;  ///< the length of a round
   double duration = 60;
-  double step = 0.01;     ///< period of the controllers, and of RK4
-  double monitor = 0.05;  ///< time between checks of assumptions, invariants and collisions
-  double pose_rate = 10;  ///< Hz, in the trace
-  double skip = 0;        ///< probability that a robot skips a round
+  double step = 0.01;     ///< the period of the controllers, and the step of RK4
+  double monitor = 0.05;  ///< the time between checks of assumptions and invariants
+  double pose_rate = 10;  ///< how many poses of each robot the trace gets per second
+  double skip = 0;        ///< the probability that a robot skips a round in which no event is urgent
   Integrator integrator = Integrator::kRungeKutta4;
   Policy policy = Policy::kFirst;
   std::optional<uint64_t> seed;
   diag::Span until_span;
-  std::string until;  ///< `mapped`, `stopped` or nothing
+  Until until = Until::kTime;
   World world;
   Lidar lidar;
   double clearance = 0.3;     ///< planned paths keep so far from obstacles, beside the robot's radius
   double path_clearance = 1;  ///< `pathIsClear`
-  double cell = 1;            ///< of maps
+  double cell = 1;            ///< the side of the cells of maps
   double map_range = 0;       ///< how far scans are drawn into maps; 0: the scanner's range
   std::vector<FleetRobot> robots;
   std::map<std::string, FleetValue> params;
   std::map<std::string, FleetValue> initial;
 };
 
-/// Reads a fleet file (TOML). Every mistake is a located diagnostic; the fleet is of use only without errors.
+/// Reads a fleet file (TOML). Reports every mistake where it stands; the fleet is of use only without errors.
 Fleet ReadFleet(const diag::SourceSet& sources, diag::FileId file, diag::Diagnostics& diagnostics);
 
 }  // namespace rondo::sim

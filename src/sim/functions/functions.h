@@ -9,33 +9,38 @@
 #include "sim/fleet/fleet.h"
 #include "sim/functions/encoding.h"
 
+/// Computes the external functions of programs in simulations.
 namespace rondo::sim {
 
-/// The external functions that the simulator knows, by name and signature (`kFunctions` in functions.cc is the list).
+/// Computes the external functions that the simulator knows, by name and signature (`kFunctions` in
+/// functions.cc is the list).
 class Functions final : public koord::semantics::Host {
  public:
   Functions(const koord::Model& model, const Fleet& fleet, uint64_t seed);
 
-  /// Does the simulator compute function `f`?
+  /// Reports whether the simulator computes function `f`.
   bool Knows(size_t f) const { return f < known_.size() && known_[f] != nullptr; }
+  /// Connects the functions with the team that calls them and the bodies that they ask; both must outlive the
+  /// calls.
   void Attach(koord::semantics::Team& team, const std::vector<std::unique_ptr<Body>>& bodies);
 
   bool Call(size_t f, size_t robot, std::span<const Word> arguments, std::span<Word> result) override;
   void Log(size_t robot, size_t type, std::span<const Word> value) override;
 
-  /// What robots wrote to streams since the last call: robot and text.
+  /// Returns what robots wrote to streams since the last call: robot and text.
   std::vector<std::pair<size_t, std::string>> TakeLog() { return std::exchange(log_, {}); }
+  /// Returns how many paths were planned.
   uint64_t plans() const { return plans_; }
 
  private:
   using Arguments = std::span<const Word>;
-  /// Computes a function for a robot.
+  /// Computes a function for a robot: reads the words of the arguments, and writes those of the result.
   using Handler = void (Functions::*)(size_t robot, Arguments a, std::span<Word> result);
   struct Entry;
   static const Entry kFunctions[];
 
   Handler Recognise(const koord::Function& f) const;
-  /// What was never drawn: nothing is known.
+  /// Returns the map behind a handle. One that was never drawn is a map of which nothing is known.
   GridMap MapOf(Word handle) const;
   Heap& heap() const { return team_->heap(); }
 

@@ -5,7 +5,8 @@
 namespace rondo::solve::cache {
 
 Answer CachingSolver::Check(const Query& query, const Budget& budget, const base::StopToken& stop) const {
-  if (!query.wanted.empty() || !budget.core) return solver_.Check(query, budget, stop);
+  // The cache keeps neither values nor certificates.
+  if (!query.wanted.empty() || !budget.core || budget.certificate) return solver_.Check(query, budget, stop);
   const std::string question = fmt::format("; {}\n{}", name(), ToSmtLib(query));
   if (const auto entry = cache_.Find(question)) {
     ++hits_;

@@ -7,25 +7,28 @@
 
 #include "solve/certify/arithmetic/normal.h"
 
+/// What the checker of certificates knows at a step.
 namespace rondo::solve::certify {
 
-/// What is known to hold: formulas, and ranges of polynomials into which all comparisons of one polynomial
-/// are merged. Adding a fact adds what follows from it at once: bounds of roots bound their arguments,
-/// arguments of partial functions lie in their domains, ends of ranges of integers are integers. A value
-/// type: a case works on a copy.
+/// Holds what is known: formulas, and ranges of polynomials into which all comparisons of one polynomial are
+/// merged. Adding a fact adds what follows from it at once: bounds of roots bound their arguments, arguments
+/// of partial functions lie in their domains, ends of ranges of integers are integers. A value type: a case
+/// works on a copy.
 class Facts {
  public:
   explicit Facts(Normal& normal) : normal_(&normal) {}
 
+  /// Adds a fact, and what follows from it at once.
   void Add(FormulaId fact);
+  /// Reports whether the formula follows from the facts by looking: no is no statement about it.
   bool Known(FormulaId formula) const;
-  /// Do the facts contradict each other?
+  /// Reports whether the facts were found to contradict each other.
   bool contradiction() const { return contradiction_; }
-  /// Adds lo <= variable <= hi. Rejection if the facts may have a solution and yet none in this window: they
-  /// must not change when a period, no more than hi - lo, is added to the variable, but for a bound on one
-  /// side that the window respects.
+  /// Adds lo <= variable <= hi. Throws a Rejection if the facts may have a solution and yet none in this
+  /// window: they must not change when a period, no more than hi - lo, is added to the variable, but for a
+  /// bound on one side that the window respects.
   void AddWindow(AtomId variable, const Rational& lo, const Rational& hi);
-  /// Replaces the variable in all facts. Rejection if `variable = value` is not known.
+  /// Replaces the variable in all facts. Throws a Rejection if `variable = value` is not known.
   void Substitute(AtomId variable, PolyId value);
 
  private:

@@ -5,9 +5,10 @@
 
 #include "lang/smtlib/script.h"
 
+/// Certificates as text: an SMT-LIB script and the steps that refute its assertions.
 namespace rondo::solve::certify {
 
-/// One step of a proof.
+/// Is one step of a proof.
 ///
 ///     (let NAME TERM)             a name for a term
 ///     (substitute VARIABLE TERM)  the variable is known to equal the term, and is replaced by it
@@ -44,13 +45,13 @@ struct Step {
   std::string text;                 ///< of kSearch: the tree
 };
 
-/// A script, whose assertions are refuted, and the proof behind it.
+/// Is a script, whose assertions are refuted, and the proof behind it.
 struct Certificate {
   lang::smtlib::Script script;
   std::vector<Step> steps;
 };
 
-/// Reports everything that is not well-formed; then the certificate must not be used.
+/// Reads a certificate. Reports everything that is not well-formed; then it must not be used.
 void ReadCertificate(const diag::SourceSet& sources, diag::FileId file, Certificate& certificate,
                      diag::Diagnostics& diagnostics);
 

@@ -7,26 +7,29 @@
 #include "expr/arena.h"
 #include "solve/certify/arithmetic/enclosure.h"
 
+/// Contraction of boxes, as the checker of certificates does it.
 namespace rondo::solve::certify {
 
-/// Bounds of the variables of a Propagator in turn.
+/// Holds bounds of the variables of a Propagator in turn.
 using Box = std::vector<Enclosure>;
 
-/// Contracts boxes by formulas (HC4 over the graph of their terms, in MPFR arithmetic): what is cut off holds
-/// no solution.
+/// Contracts boxes by formulas (HC4 over the graph of their terms, Benhamou et al. 1999, in MPFR arithmetic):
+/// what is cut off holds no solution.
 class Propagator {
  public:
   explicit Propagator(const expr::Arena& arena) : arena_(arena) {}
 
-  /// All that are required hold together. Rejection for terms that it does not know.
+  /// Adds a formula that solutions satisfy; all that are required hold together. Throws a Rejection for terms
+  /// that it does not know.
   void Require(expr::TermId formula);
-  /// constant + the sum of coefficient * term = 0; the terms are kept whole.
+  /// Adds the equation constant + the sum of coefficient * term = 0; the terms are kept whole.
   void RequireSum(const std::vector<std::pair<expr::Rational, expr::TermId>>& parts,
                   const expr::Rational& constant);
 
-  /// The variables met so far, in the order of a Box.
+  /// Returns the variables met so far, in the order of a Box.
   const std::vector<expr::TermId>& variables() const { return variables_; }
-  /// False: no solution lies in the box. At most `sweeps` forward and backward, fewer once little changes.
+  /// Contracts the box, at most `sweeps` times forward and backward, fewer once little changes. Returns false
+  /// if no solution lies in it.
   bool Contract(Box& box, int sweeps);
 
  private:

@@ -4,6 +4,7 @@
 
 #include "solve/icp/tape/contractor.h"
 
+/// Proofs that equations have solutions, where no exact solution can be written down.
 namespace rondo::solve::icp {
 
 /// Proves that the equations of a formula have a common solution near a point, by Krawczyk's operator: as
@@ -13,9 +14,11 @@ class Existence {
  public:
   Existence(const Tape& tape, const interval::Kernels& kernels);
 
+  /// Returns how many equations the formula demands.
   size_t equations() const { return equations_.size(); }
-  /// Bounds of the variables between which all equations that the formula demands hold somewhere; those that
-  /// stay are points. nullopt: none are demanded, or nothing could be shown.
+  /// Returns bounds of the variables (lower, upper, in turn) between which all equations that the formula
+  /// demands hold somewhere; those that stay are points. nullopt: none are demanded, or nothing could be
+  /// shown.
   std::optional<std::vector<double>> Around(const std::vector<double>& point);
 
  private:

@@ -7,8 +7,10 @@
 #include "interval/interval.h"
 #include "verdict/truth.h"
 
+/// Formulas at one point: how a `sat` is verified.
 namespace rondo::solve::icp {
 
+/// Gives variables their values.
 using Assignment = std::unordered_map<expr::TermId, expr::Rational>;
 
 /// Evaluates formulas at one point, rationally where that is possible and with intervals otherwise. Written
@@ -17,12 +19,13 @@ using Assignment = std::unordered_map<expr::TermId, expr::Rational>;
 class PointChecker {
  public:
   PointChecker(const expr::Arena& arena, const Assignment& point) : arena_(arena), point_(point) {}
-  /// The variable may have any value in `range`: what is called true is true for all of them.
+  /// Lets the variable have any value in `range`: what is called true is true for all of them.
   void Widen(expr::TermId variable, interval::Interval range) { widened_[variable] = range; }
+  /// Tells what is known of the formula at the point: kTrue and kFalse are certain.
   verdict::Truth Check(expr::TermId formula);
-  /// The value of a term, if it is known exactly.
+  /// Returns the value of a term, if it is known exactly.
   std::optional<expr::Rational> Exact(expr::TermId term);
-  /// An enclosure of the value of a term; empty where it may have none.
+  /// Encloses the value of a term; empty where it may have none.
   interval::Interval Enclosure(expr::TermId term);
 
  private:

@@ -3,9 +3,10 @@
 #include "solve/icp/existence.h"
 #include "solve/icp/point.h"
 
+/// Verification of what a search calls a solution.
 namespace rondo::solve::icp {
 
-/// Values of all variables of a query at which it is true; if not `exact`, near which it certainly is.
+/// Gives all variables of a query values at which it is true; if not `exact`, near which it certainly is.
 struct Solution {
   Assignment values;
   bool exact = true;
@@ -17,7 +18,8 @@ class Verifier {
   /// `tape` is the conjunction's, `lowered` the whole query.
   Verifier(Lowered& lowered, const Prepared& prepared, const Tape& tape, const interval::Kernels& kernels);
 
-  /// At or near a point: a number for each variable of the tape.
+  /// Looks at, and then near, a point: a number for each variable of the tape. Nothing if no solution was
+  /// proved.
   std::optional<Solution> Verify(const std::vector<double>& point);
 
  private:

@@ -15,10 +15,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-bool IsDefinite(const Answer& answer) {
-  return std::holds_alternative<Sat>(answer) || std::holds_alternative<Unsat>(answer);
-}
-
 double Since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// All engines at once.
@@ -68,10 +64,8 @@ class Race {
 }  // namespace
 
 std::string Describe(const Answer& answer) {
-  if (std::holds_alternative<Unsat>(answer)) return "unsat";
-  if (std::holds_alternative<Sat>(answer)) return "sat";
-  if (std::holds_alternative<DeltaSat>(answer)) return "delta-sat";
-  return std::get<Unknown>(answer).reason;
+  const auto* unknown = std::get_if<Unknown>(&answer);
+  return unknown != nullptr ? unknown->reason : std::string(Name(KindOf(answer)));
 }
 
 Answer PortfolioSolver::Check(const Query& query, const Budget& budget, const base::StopToken& stop) const {
@@ -83,6 +77,10 @@ Report PortfolioSolver::Decide(const Query& query, const Budget& budget, const b
   const bool alone = options_.others.empty();
   const Clock::time_point start = Clock::now();
   const base::StopToken limited = stop.WithDeadline(start + budget.time);
+  if (limited.StopRequested()) {
+    report.answer = Unknown{"stopped", false};
+    return report;
+  }
   icp::Options quick = options_.icp;
   if (!alone) quick.max_boxes = 20'000;
   report.answer = icp::IcpSolver(quick).Check(query, budget, limited, report.icp);

@@ -132,15 +132,14 @@ class Runner {
   void Tell(CheckOutcome& check) {
     values_.clear();
     const solve::Answer& answer = check.report.answer;
+    check.answer = solve::KindOf(answer);
     has_model_ = std::holds_alternative<solve::Sat>(answer);
     if (const auto* unknown = std::get_if<solve::Unknown>(&answer)) {
-      check.answer = "unknown";
       check.reason = unknown->reason;
       outcome_.text += fmt::format("unknown\n; {}\n", unknown->reason);
       return;
     }
-    check.answer = solve::portfolio::Describe(answer);
-    outcome_.text += check.answer + "\n";
+    outcome_.text += fmt::format("{}\n", solve::Name(check.answer));
     if (const auto* sat = std::get_if<solve::Sat>(&answer)) {
       values_ = sat->values;
       for (const auto& [variable, near] : sat->near) values_.emplace(variable, expr::Value{near});

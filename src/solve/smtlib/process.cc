@@ -11,6 +11,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <thread>
 
 extern char** environ;
 
@@ -85,8 +86,17 @@ base::Result<ProcessOutput> RunProcess(const std::vector<std::string>& command, 
       if (n == 0) open = false;
     }
   }
+  // A program that has closed its output may go on for ever.
   int status = 0;
-  ::waitpid(child, &status, 0);
+  while (::waitpid(child, &status, WNOHANG) == 0) {
+    if (std::chrono::steady_clock::now() >= deadline || stop.StopRequested()) {
+      result.timed_out = true;
+      ::kill(child, SIGKILL);
+      ::waitpid(child, &status, 0);
+      break;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   const timespec none{0, 0};
   while (::sigtimedwait(&pipe_signal, nullptr, &none) > 0) {

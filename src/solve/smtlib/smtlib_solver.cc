@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 
@@ -28,9 +29,14 @@ Answer SmtLibSolver::Check(const Query& query, const Budget& budget, const base:
     if (stop.cancelled()) return Unknown{"interrupted"};
     return Unknown{fmt::format("time-out after {} ms", budget.time.count()), true};
   }
+  const bool partial = std::ranges::any_of(
+      query.assertions, [&](const Assertion& a) { return query.arena->IsPartial(a.formula); });
   std::istringstream lines(output.value().text);
   for (std::string line; std::getline(lines, line);) {
     if (line == "unsat") return Unsat{};
+    // Programs take roots and logarithms for total functions: what satisfies the question for them need not for us
+    // (docs/adr/0005-undefined-terms.md). Their `unsat` is about more interpretations, not fewer.
+    if (line == "sat" && partial) return Unknown{name_ + " gives undefined terms values of its own"};
     if (line == "sat") return Sat{};
     if (line.starts_with("delta-sat")) return DeltaSat{};
     if (line == "unknown") return Unknown{name_ + " answers unknown"};

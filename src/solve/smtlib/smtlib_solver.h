@@ -2,14 +2,15 @@
 
 #include "solve/solver.h"
 
+/// Solvers that are other programs.
 namespace rondo::solve::smtlib {
 
-/// Any program that reads an SMT-LIB 2 script from standard input and prints `sat`, `unsat` or `unknown`.
-/// Gives verdicts only: no core, no values.
+/// Asks any program that reads an SMT-LIB 2 script from standard input and prints `sat`, `unsat` or
+/// `unknown`. Gives verdicts only: no core, no values.
 class SmtLibSolver : public Solver {
  public:
-  /// `command` is a program and its arguments, separated by blanks; `cvc5` and `z3` get the arguments that
-  /// they need.
+  /// Takes a program and its arguments, separated by blanks; `cvc5` and `z3` get the arguments that they
+  /// need.
   explicit SmtLibSolver(const std::string& command);
 
   std::string name() const override { return name_; }

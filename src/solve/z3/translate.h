@@ -8,19 +8,22 @@
 #include "expr/arena.h"
 #include "expr/value.h"
 
+/// Terms in Z3, and values back.
 namespace rondo::solve::z3 {
 
-/// Terms to Z3 expressions of one context, and values of that context back. Not thread-safe.
+/// Translates terms to Z3 expressions of one context, and values of that context back. Not thread-safe.
 class Translator {
  public:
   Translator(const expr::Arena& arena, ::z3::context& context) : arena_(arena), context_(context) {}
 
+  /// Returns the term as an expression; equal subterms are translated once.
   ::z3::expr operator()(expr::TermId term);
 
-  /// A rational number near an evaluated expression that is an irrational algebraic number; else nothing.
+  /// Returns a rational number near an evaluated expression that is an irrational algebraic number; else
+  /// nothing.
   std::optional<expr::Rational> Near(const ::z3::expr& value);
-  /// The value of an evaluated expression of this sort.
-  /// Throws z3::exception when it is not a value, e.g. an irrational algebraic number.
+  /// Returns the value of an evaluated expression of this sort. Throws z3::exception when it is not a value,
+  /// e.g. an irrational algebraic number.
   expr::Value Read(const ::z3::expr& value, expr::SortId sort);
 
  private:

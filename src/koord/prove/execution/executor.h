@@ -10,12 +10,14 @@
 #include "diag/diagnostic.h"
 #include "koord/prove/execution/vocabulary.h"
 
-/// Symbolic execution of Koord: expressions become terms, an event becomes its guard and the values that it
+/// Executes Koord symbolically: expressions become terms, an event becomes its guard and the values that it
 /// leaves (Koord paper, Figs. 6-8; rules are named at the code that follows them).
 namespace rondo::koord {
 
-/// What must hold for an operation to be defined, where control reaches it.
+/// Names why an operation may be undefined: an index, a zero divisor, an absent item, a loop that is longer
+/// than it was unrolled, a function without a result, an `any` without values.
 enum class CheckKind : uint8_t { kIndex, kDivision, kRemove, kUnrolling, kReturn, kChoice };
+/// States what must hold for one operation to be defined: where control reaches it (`reached`), `holds`.
 struct DefinednessCheck {
   CheckKind kind;
   diag::Span span;
@@ -23,7 +25,7 @@ struct DefinednessCheck {
   TermId holds;
 };
 
-/// A read of something that other robots or the environment write: for the table of a witness.
+/// Records a read of something that other robots or the environment write, for the table of a witness.
 struct ReadRecord {
   size_t variable;
   TermId index;  ///< the robot whose cell was read; invalid for a port or a variable shared by all
@@ -31,17 +33,18 @@ struct ReadRecord {
   TermId reached;
 };
 
-/// A write to a variable that every robot may write. No index: to the whole.
+/// Records a write to a variable that every robot may write, if `condition` holds: to the whole, if there are
+/// no indices.
 struct SharedWrite {
   size_t variable;
   TermId condition;
   std::vector<TermId> indices;  ///< of a cell, or of the part of an array that has all cells behind them
 };
 
-/// What one robot does when it executes an event, in terms of the values at the start of the round.
+/// Describes what one robot does when it executes an event, in terms of the values at the start of the round.
 struct Effect {
   TermId enabled;
-  TermId locks;  ///< does it take the lock of the event?
+  TermId locks;  ///< it takes the lock of the event (`atomic`)
   TermId stops;
   TermId chosen;              ///< what `any` chooses is among its values
   std::vector<TermId> value;  ///< afterwards: its own cell of what exists for each robot, else the whole
@@ -50,33 +53,37 @@ struct Effect {
   std::vector<ReadRecord> reads;
 };
 
+/// Says how far execution goes.
 struct ExecutionOptions {
-  int64_t unrolling = 256;     ///< iterations of one loop
+  int64_t unrolling = 256;     ///< how many iterations of one loop are executed at most
   bool expand_robots = false;  ///< quantifiers over robots become conjunctions; N_sys must be fixed
 };
 
+/// Executes events and evaluates specifications of one program over terms.
 class Executor {
  public:
   Executor(Vocabulary& vocabulary, diag::Diagnostics& diagnostics, ExecutionOptions options = {});
 
-  /// Rule SelectEvent and the statements of the event, for `robot`, from `start`. Everything is read from the
-  /// robot's own copy: the values at `start` and its own writes.
+  /// Executes an event: rule SelectEvent and its statements, for `robot`, from `start`. Everything is read
+  /// from the robot's own copy: the values at `start` and its own writes (Var-Lookup).
   Effect Run(const EventDef& event, const View& start, TermId robot);
-  /// The `init` blocks in order, as one event without guard.
+  /// Executes the `init` blocks in order, as one event without guard.
   Effect RunInit(const View& start, TermId robot);
 
-  /// An expression of a specification at `view`. `robot` stands for the robot of names without one; it is
-  /// only looked at if there are such names. `old` is the moment of `old(...)`, or nullptr.
+  /// Returns the value of an expression of a specification at `view`. `robot` stands for the robot of names
+  /// without one; it is only looked at if there are such names. `old` is the moment of `old(...)`, or
+  /// nullptr.
   TermId Specification(ExprId e, const View& view, TermId robot, const View* old,
                        const std::map<uint32_t, TermId>& bindings);
-  /// An initial value for `robot`: an expression over parameters, as a value of `type`. Reports it if it may
-  /// have none.
+  /// Returns an initial value for `robot`: an expression over parameters, as a value of `type`. Reports it if
+  /// it may have none.
   TermId Value(ExprId e, TypeId type, const View& parameters, TermId robot);
+  /// Reports whether quantifiers over robots become conjunctions.
   bool expands_robots() const { return options_.expand_robots; }
-  /// Did the last specification mention the robot?
+  /// Reports whether the last specification mentioned the robot.
   bool used_robot() const { return used_robot_; }
-  /// What must hold for the specifications evaluated since the last call to have values: each operation of
-  /// theirs is defined where it is reached.
+  /// Returns what must hold for the specifications evaluated since the last call to have values: each
+  /// operation of theirs is defined where it is reached.
   std::vector<DefinednessCheck> TakeSpecificationChecks() { return std::exchange(specification_checks_, {}); }
 
  private:
@@ -112,7 +119,7 @@ class Executor {
   TermId Binary(const lang::Expr& e);
   TermId Arithmetic(const lang::Expr& e);
   TermId Membership(const lang::Expr& e);
-  /// What `+` makes of strings does not matter to any proof, only that it is a function.
+  /// Returns what `+` makes of two strings: to proofs only that it is a function matters.
   TermId Concatenate(TermId a, TermId b);
   TermId Quantifier(ExprId id, const lang::Expr& e);
   TermId Any(ExprId id, const lang::Expr& e);
@@ -147,7 +154,7 @@ class Executor {
   void Method(const Stmt& stmt);
   State Merge(TermId condition, const State& then, const State& otherwise);
   TermId Live() const;
-  /// The declared length of an array; of a list, a bound that an invariant or assumption states.
+  /// Returns the declared length of an array; of a list, a bound that an invariant or assumption states.
   std::optional<int64_t> LengthBound(ExprId list);
   TermId ArrayLength(TypeId array);
   TermId InRange(TermId index, TermId length);

@@ -8,51 +8,60 @@
 #include "expr/arena.h"
 #include "koord/check/model.h"
 
+/// Maps the types, variables and functions of a program to sorts and symbols of the solver.
 namespace rondo::koord {
 
 using expr::SortId;
 using expr::TermId;
 
-/// The state at one moment: for each variable one term; an array over robots for what exists once for each
-/// robot.
+/// Holds the state at one moment: for each variable one term, which is an array over robots for what exists
+/// once for each robot.
 struct View {
   std::vector<TermId> value;
-  TermId stopped;              ///< array over robots: has executed `stop`
-  std::string planner_suffix;  ///< which version of the callable ports
+  TermId stopped;              ///< an array over robots: whether the robot has executed `stop`
+  std::string planner_suffix;  ///< names the version of the callable ports at this moment
 };
 
-/// The sorts and symbols that stand for a program's types, variables and functions.
+/// Makes the sorts and symbols that stand for a program's types, variables and functions.
 ///
 /// Variables keep their names. Symbols of our own have a blank in theirs, which no program can write, so that
 /// the two never meet.
 class Vocabulary {
  public:
-  /// `robots`: N_sys as a number when it is fixed; else a constant N_sys >= 1.
+  /// Declares what a proof needs. `robots`: N_sys as a number when it is fixed; else N_sys is a constant of
+  /// which N_sys >= 1 is known.
   Vocabulary(expr::Arena& arena, const Model& model, std::optional<int64_t> robots);
 
+  /// Returns the sort of the values of a type.
   SortId SortOf(TypeId type);
-  /// The sort of one robot's cell, or of the whole variable if it is shared by all.
+  /// Returns the sort of one robot's cell, or of the whole variable if it is shared by all.
   SortId CellSort(size_t variable) { return SortOf(model_.variables[variable].type); }
+  /// Returns a state of which nothing is known; the names of its symbols end with `suffix`. The same suffix
+  /// gives the same state.
   View MakeView(const std::string& suffix);
-  /// The symbol of an external function; a callable port takes the robot first and has a version.
+  /// Returns the symbol of an external function; that of a callable port takes the robot first and has a
+  /// version.
   expr::SymbolId Function(size_t function, const std::string& planner_suffix);
+  /// Returns the symbol of the distance of two points (see `Distances`).
   expr::SymbolId Dist();
-  /// Texts are only known to be equal or not: counterexamples with them are possible, never certain.
+  /// Notes that the problem has texts. These are only known to be equal or not: counterexamples with them are
+  /// possible, never certain.
   void MarkTexts() { uses_texts_ = true; }
   bool uses_texts() const { return uses_texts_; }
-  /// `dist` is known by axioms only, so a model may take a distance that is none.
+  /// Reports whether `dist` occurs. It is known by axioms only, so a model may take a distance that is none.
   bool uses_dist() const { return uses_dist_; }
 
-  /// Can a robot stop at all? If not, no state has to say that it has not.
+  /// Reports whether a robot can stop at all. If not, no state has to say that it has not.
   bool robots_stop() const { return robots_stop_; }
+  /// Returns N_sys.
   TermId robots() const { return robots_; }
   std::optional<int64_t> fixed_robots() const { return fixed_; }
-  /// 0 <= i < N_sys
+  /// Returns the formula 0 <= i < N_sys.
   TermId IsRobot(TermId i);
-  /// A constant of the sort of strings for a literal.
+  /// Returns the constant, of the sort of strings, that stands for a literal; one for each text.
   TermId StringLiteral(const std::string& text);
-  /// What is true of the vocabulary itself: N_sys >= 1, different literals are different. (For `dist`, see
-  /// `Distances`.)
+  /// Returns what is true of the vocabulary itself: N_sys >= 1, different literals are different. (For
+  /// `dist`, see `Distances`.)
   std::vector<TermId> Axioms();
 
   expr::Arena& arena() { return arena_; }

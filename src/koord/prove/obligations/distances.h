@@ -7,21 +7,24 @@
 
 #include "koord/prove/execution/vocabulary.h"
 
+/// Tells the solver what it has to know about `dist`.
 namespace rondo::koord {
 
-/// What Euclid knows of the distances of points that occur in `formulas`, which solvers take as an
-/// uninterpreted function: they are not negative, symmetric, and zero for equal points alone; no two sides of
-/// a triangle are shorter together than the third; coordinates differ by no more than the distance, which is
-/// no more than their sum; the middle of two points is half as far from either. Quantifier-free and linear,
-/// with no new points, so that this ends; a model may still take a distance that is none.
-/// Cost: cubic in the number of points, up to a limit.
+/// States what Euclid knows of the distances of points that occur in formulas, which solvers take as an
+/// uninterpreted function: distances are not negative, symmetric, and zero for equal points alone; no two
+/// sides of a triangle are shorter together than the third; coordinates differ by no more than the distance,
+/// which is no more than the sum of these differences; the middle of two points is half as far from either.
+/// The axioms are quantifier-free and linear and name no new points, so that this ends; a model may still
+/// take a distance that is none.
+/// Cost: cubic in the number of points, up to a limit of triangles.
 class Distances {
  public:
-  /// kDistance: that it is not negative, symmetric, and zero for equal points alone.
+  /// Says how much is stated: kDistance only that distances are not negative, symmetric, and zero for equal
+  /// points alone; kAll everything.
   enum class Detail : uint8_t { kDistance, kAll };
   Distances(Vocabulary& vocabulary, Detail detail)
       : vocabulary_(vocabulary), arena_(vocabulary.arena()), detail_(detail) {}
-  /// What has not been said before.
+  /// Returns the axioms for the distances in `formulas` that earlier calls have not returned.
   std::vector<TermId> Axioms(const std::vector<TermId>& formulas);
 
  private:
@@ -43,12 +46,12 @@ class Distances {
   std::set<std::pair<TermId, TermId>> mirrored_;
 };
 
-/// The points of each distance in `formulas` differ along one axis only. Then `Axioms` leave the distance one
-/// value, the true one: a model is a counterexample in space.
+/// Returns the formula that the points of each ground distance in `formulas` differ along one axis only. With
+/// it, `Axioms` leave each distance one value, the true one, so that a model is a counterexample in space.
 TermId AlongAxes(Vocabulary& vocabulary, const std::vector<TermId>& formulas);
 
-/// Does a quantifier in `formulas` speak of the distances of points that have no name? A model may take any
-/// function for those, and nothing says that the true one would do.
+/// Reports whether a quantifier in `formulas` speaks of the distances of points that have no name. A model
+/// may take any function for those, and nothing says that the true one would do.
 bool HasDistanceOfAnyPoints(Vocabulary& vocabulary, const std::vector<TermId>& formulas);
 
 }  // namespace rondo::koord

@@ -6,17 +6,18 @@
 #include "koord/prove/execution/vocabulary.h"
 #include "solve/solver.h"
 
+/// Tells the solver that a team is finite.
 namespace rondo::koord {
 
-/// A team is finite, so one of its robots has the least and one the largest value of every number t(i): for
-/// each t that `formulas` compare between two robots of quantifiers (`t(j) <= t(i)`),
-/// `exists m: forall k: t(k) <= t(m)` and the same from below. No other axiom says that a team is finite, and
-/// instances alone do not need it: only invariants like `exists i in ID: forall j in ID: x[j] <= x[i]` do.
+/// States that one robot has the least and one the largest value of every number t(i), since a team is
+/// finite: for each t that `formulas` compare between two robots of quantifiers (`t(j) <= t(i)`), `exists m:
+/// forall k: t(k) <= t(m)` and the same from below. No other axiom says that a team is finite, and instances
+/// alone do not need it: only invariants like `exists i in ID: forall j in ID: x[j] <= x[i]` do.
 /// Cost: linear in the number of distinct subterms.
 class Extremes {
  public:
   explicit Extremes(Vocabulary& vocabulary);
-  /// The axioms for what is compared in `formulas`; of the same value always the same.
+  /// Returns the axioms for what is compared in `formulas`; for one value always the same formulas.
   std::vector<solve::Assertion> Axioms(const std::vector<solve::Assertion>& formulas);
 
  private:

@@ -10,17 +10,18 @@
 #include "koord/prove/obligations/theory.h"
 #include "solve/instantiate.h"
 
+/// States the questions of a proof, ready for a solver.
 namespace rondo::koord {
 
-/// A question whose answer should be "unsatisfiable" (an obligation) or "satisfiable" (a sanity check).
+/// Holds a question whose answer should be "unsatisfiable" (an obligation) or "satisfiable" (a sanity check).
 struct Problem {
   std::vector<solve::Assertion> assertions;  ///< with quantifiers
   solve::Query query;                        ///< without; see `Problems::Ground`
-  bool complete = false;                     ///< nothing was lost on the way: satisfiable means satisfiable
+  bool complete = false;                     ///< nothing was lost: satisfiable means satisfiable
   std::vector<TermId> participants;
-  std::unordered_set<TermId> lists;  ///< whose axioms are among the assertions
+  std::unordered_set<TermId> lists;  ///< the lists whose axioms are among the assertions
 
-  /// The query, and whatever its instances do not cover: what satisfies it satisfies the problem.
+  /// Returns the query with whatever its instances do not cover: what satisfies it satisfies the problem.
   solve::Query Whole() const;
 };
 
@@ -39,53 +40,58 @@ class Problems {
   bool has_init() const { return init_.has_value(); }
   size_t columns() const { return round_.actions().size(); }
 
-  /// [Init] every initial state satisfies invariant i.
+  /// States [Init]: every initial state satisfies invariant i.
   Problem Initially(size_t invariant);
-  /// [Step] from a state that satisfies all invariants, invariant i holds at every moment of a round in which
-  /// `action` is the first, in program order, that a participant takes (0: all skip; none: any round).
-  /// `reachable`: the state is initial as well.
+  /// States [Step]: from a state that satisfies all invariants, invariant i holds at every moment of a round
+  /// in which `action` is the first, in program order, that a participant takes (0: all skip; none: any
+  /// round).
+  /// @param reachable  the state at the start is initial as well.
   Problem Step(size_t invariant, std::optional<size_t> action, bool reachable);
-  /// Are there robots that the denied invariant reads, whose actions are the cases of `Step`? Else a round
-  /// has one case: what any robot does.
+  /// Reports whether there are robots that the denied invariant reads, whose actions are the cases of `Step`.
+  /// Else a round has one case: what any robot does.
   bool HasCases(size_t invariant);
-  /// [Follows] at any moment, invariant i follows from the premises: invariants that hold at the same moment.
+  /// States [Follows]: at any moment, invariant i follows from the premises, invariants that hold at the same
+  /// moment.
   Problem Follows(size_t invariant, const std::vector<size_t>& premises);
-  /// [Def] every operation of the action, or of a part of the specification, is defined wherever it is
-  /// reached.
+  /// States [Def]: every operation of the action, or of a part of the specification, is defined wherever it
+  /// is reached.
   Problem Defined(size_t place);
-  /// The same for one operation of one robot: one of `ChecksAt(place, robot)`.
+  /// States [Def] for one operation of one robot, which is one of `ChecksAt(place, robot)`.
   Problem DefinedAt(size_t place, const DefinednessCheck& check, TermId robot);
-  /// The operations of `place`, an action or `specification(part)`, as `robot` runs it.
+  /// Returns the operations of `place`, an action or `specification(part)`, as `robot` runs it.
   std::vector<DefinednessCheck> ChecksAt(size_t place, TermId robot);
+  /// Returns the same for the robot of the problems about one robot.
   std::vector<DefinednessCheck> ChecksOf(size_t place) { return ChecksAt(place, robot_); }
-  /// The parts of the specification, as places behind those of the actions. Every operation must have a
-  /// value, where what is assumed of the same part holds.
+  /// Names the parts of the specification, which are places behind those of the actions. Every operation must
+  /// have a value, where what is assumed of the same part holds.
   enum class Part : uint8_t { kInvariants, kPorts, kInitial, kFacts };
   static constexpr size_t kParts = 4;
   size_t specification(Part part) const { return round_.actions().size() + static_cast<size_t>(part); }
-  /// What reports call an action or part of the specification.
+  /// Returns what reports call an action or part of the specification.
   std::string NameOf(size_t place) const;
 
-  /// Satisfiable if for some arguments no result of function `f` satisfies its summaries.
+  /// States a sanity check: satisfiable if for some arguments no result of function `f` satisfies its
+  /// summaries.
   Problem ImpossibleSummary(size_t f);
-  /// [Sat] there is an initial state.
+  /// States [Sat]: there is an initial state.
   Problem SomeInitialState();
-  /// [Sat] general assumptions and summaries allow the values that the action computes.
+  /// States [Sat]: general assumptions and summaries allow the values that the action computes.
   Problem SomeValues(size_t action);
-  /// [Sat] some state that satisfies the invariants enables the event.
+  /// States [Sat]: some state that satisfies the invariants enables the event.
   Problem SomeEnabled(size_t action);
-  /// [Sat] where the condition of promise `p` holds, the environment can keep it and all others; `with`: and
-  /// keeps them, else only the condition holds.
+  /// States [Sat]: where the condition of promise `p` holds, the environment can keep it and all others.
+  /// @param with  states that it keeps them; else only that the condition holds.
   Problem SomePromise(size_t p, bool with);
-  /// [Now] where the invariants and the condition of promise `p` hold, the promise holds at t = 0.
+  /// States [Now]: where the invariants and the condition of promise `p` hold, the promise holds at t = 0.
   Problem PromiseNow(size_t p);
+  /// Returns the promises of one robot in a round; their places are the numbers `p` above.
   std::vector<Theory::Promise> promises() { return theory_.Promises(round_.settled(), round_.end(), robot_); }
 
-  /// How quantifiers are instantiated from now on, and what is said of distances.
+  /// Says how quantifiers are instantiated from now on, and what is said of distances.
   solve::InstantiationLimits limits;
   Distances::Detail distances = Distances::Detail::kAll;
 
-  /// The robot of the problems about one robot.
+  /// Returns the robot of the problems about one robot: any.
   TermId robot() const { return robot_; }
   TermId size() const { return vocabulary_.robots(); }
   bool uses_dist() const { return vocabulary_.uses_dist(); }
@@ -124,5 +130,10 @@ class Problems {
   std::optional<Extremes> extremes_;
   solve::Witnesses witnesses_;
 };
+
+/// Puts assertions behind others.
+inline void Append(std::vector<solve::Assertion>& to, std::vector<solve::Assertion> from) {
+  for (solve::Assertion& a : from) to.push_back(std::move(a));
+}
 
 }  // namespace rondo::koord

@@ -7,10 +7,11 @@
 #include "koord/prove/execution/executor.h"
 #include "solve/solver.h"
 
+/// States what one round can do, as formulas for a solver.
 namespace rondo::koord {
 
-/// One round, or the execution of `init` by every robot, as a relation between the state at its start and a
-/// state at any later moment of it (docs/theory.md, "The round"):
+/// States one round, or the execution of `init` by every robot, as a relation between the state at its start
+/// and a state at any later moment of it (docs/theory.md, "The round"):
 /// - each robot runs at most one event, or skips; all read the values at the start (EventTrans, SkipEvent);
 /// - what every robot may write takes the value of the last writer in an order that is the same for all
 /// variables;
@@ -22,19 +23,25 @@ namespace rondo::koord {
 /// does not read their state, except as last writers, and those are participants of their own.
 class Round {
  public:
+  /// Says which transition it is: the events of a round, or `init` of every robot.
   enum class Kind : uint8_t { kEvents, kInit };
 
   Round(Vocabulary& vocabulary, Executor& executor, Kind kind);
 
+  /// Returns the state at the start of the round, and the one at the moment that the relation leads to.
   const View& start() const { return start_; }
   const View& end() const { return end_; }
-  /// Sensors as at the start, everything else as at the end: the moment at which the environment takes over.
+  /// Returns the state at which the environment takes over: sensors as at the start, everything else as at
+  /// the end.
   const View& settled() const { return settled_; }
+  /// Returns whether the environment has moved already.
   TermId moved() const { return moved_; }
 
-  /// The actions of this round: `skip` first (unless it is `init`), then the events.
+  /// Returns the names of the actions of this round: `skip` first (unless it is `init`), then the events.
   const std::vector<std::string>& actions() const { return actions_; }
+  /// Returns the formula that the robot takes this action in the round.
   TermId Acts(TermId robot, size_t action);
+  /// Returns what the action does if this robot takes it.
   const Effect& EffectOf(size_t action, TermId robot);
 
   /// Makes participants of all robots whose state at the end `goal` reads, and of a last writer for each
@@ -43,9 +50,10 @@ class Round {
   /// @param others  participants in any case.
   std::vector<solve::Assertion> Relate(TermId goal, const std::vector<TermId>& everyone,
                                        const std::vector<TermId>& others = {});
+  /// Returns the robots that the last `Relate` stated the round for.
   const std::vector<TermId>& participants() const { return participants_; }
-  /// The participants without `others`. They follow from the goal (and the team, where that is told in full)
-  /// alone, so cases by what they do fit together, whoever else takes part in the proof of one.
+  /// Returns the participants without `others`. They follow from the goal (and the team, where that is told
+  /// in full) alone, so cases by what they do fit together, whoever else takes part in the proof of one.
   const std::vector<TermId>& readers() const { return readers_; }
 
  private:

@@ -54,18 +54,25 @@ void Compiler::CallFunction(const lang::Expr& e, size_t f) {
   }
   if (in_summary_ || summaries.empty() || !model_.bound_by.contains(model_.summaries[summaries[0]]))
     return CallPlain(f, words, result);
-  // Every call is checked against the summaries, except calls in summaries.
-  const size_t begin = Emit(Op::kSummaryBegin);
+  // Every call is checked against the summaries, except calls in summaries. The call itself is like any other: what fails in
+  // it fails, and calls in it are checked. Its arguments wait in a frame of this place.
   const std::vector<uint32_t>& first = model_.bound_by.at(model_.summaries[summaries[0]]);
+  std::vector<uint32_t> arguments;
+  for (const TypeId parameter : function.parameters) arguments.push_back(NewFrame(Width(parameter)));
   for (size_t i = function.parameters.size(); i-- > 0;)
-    Emit(Op::kSetFrame, FrameOf(first[i]), Width(function.parameters[i]));
+    Emit(Op::kSetFrame, arguments[i], Width(function.parameters[i]));
   for (size_t i = 0; i < function.parameters.size(); ++i)
-    Emit(Op::kFrame, FrameOf(first[i]), Width(function.parameters[i]));
+    Emit(Op::kFrame, arguments[i], Width(function.parameters[i]));
   CallPlain(f, words, result);
-  Emit(Op::kSetFrame, FrameOf(first.back()), result);
   const uint32_t kept = NewFrame(result);
-  Emit(Op::kFrame, FrameOf(first.back()), result);
   Emit(Op::kSetFrame, kept, result);
+  const size_t begin = Emit(Op::kSummaryBegin);
+  for (size_t i = 0; i < function.parameters.size(); ++i) {
+    Emit(Op::kFrame, arguments[i], Width(function.parameters[i]));
+    Emit(Op::kSetFrame, FrameOf(first[i]), Width(function.parameters[i]));
+  }
+  Emit(Op::kFrame, kept, result);
+  Emit(Op::kSetFrame, FrameOf(first.back()), result);
   for (const size_t s : summaries) {
     const std::vector<uint32_t>& bound = model_.bound_by.at(model_.summaries[s]);
     for (size_t i = 0; s != summaries[0] && i < bound.size(); ++i) {
@@ -91,11 +98,8 @@ void Compiler::CallFunction(const lang::Expr& e, size_t f) {
     }
   }
   Emit(Op::kSummaryEnd);
-  Emit(Op::kFrame, kept, result);
-  const size_t out = Emit(Op::kJump);
   Patch(begin);
-  CallPlain(f, words, result);
-  Patch(out);
+  Emit(Op::kFrame, kept, result);
 }
 
 void Compiler::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) {

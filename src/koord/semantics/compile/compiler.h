@@ -10,46 +10,52 @@
 #include "koord/semantics/machine/code.h"
 #include "koord/semantics/machine/layout.h"
 
+/// Compiles checked Koord expressions and statements to the instructions of `Machine`.
 namespace rondo::koord::semantics {
 
-/// A formula, or part of an event, that has no executable form, and why.
+/// Says which formula or part of an event has no executable form, and why.
 struct Unsupported {
   diag::Span span;
   std::string reason;
 };
 
-/// Turns expressions and statements into code for one layout. Its rules are split over files by what they are
-/// about: expressions, quantifiers, calls, statements.
+/// Turns expressions and statements into code for one layout. Each function that returns a number appends
+/// code and returns its entry, for `Machine::Run`. The rules are split over files by what they are about:
+/// expressions, quantifiers, calls, statements.
 class Compiler {
  public:
   Compiler(const Model& model, const Layout& layout, Heap& heap, Code& code);
 
-  /// Pushes the value of `e`, as a value of `type`.
+  /// Compiles code that pushes the value of `e`, converted to `type`.
   uint32_t Expression(ExprId e, TypeId type);
-  /// Pushes the value of a formula.
+  /// Compiles code that pushes the truth value of a formula.
   uint32_t Formula(ExprId e) { return Expression(e, model_.types.boolean()); }
-  /// Runs the statements from top to bottom.
+  /// Compiles code that runs the statements from top to bottom.
   uint32_t Statements(const std::vector<Stmt>& body);
-  /// Sets variable `v` of the robot, or of all, to the value of `e`.
+  /// Compiles code that sets variable `v` of the robot that runs it, or the one of all robots, to the value
+  /// of `e`.
   uint32_t Initial(size_t v, ExprId e);
-  /// Makes the code of every function that was called.
+  /// Compiles the functions that are called so far and have no code yet. `Expression`, `Statements` and
+  /// `Initial` end with it.
   void Functions();
 
-  /// Did the last expression mention the robot that it is about?
+  /// Reports whether what was compiled last mentions the robot that it is about: `pid`, or what each robot
+  /// has its own of.
   bool used_robot() const { return used_robot_; }
-  /// Did the last statements contain `atomic`?
+  /// Reports whether the statements that were compiled last contain `atomic`.
   bool locks() const { return locks_; }
-  /// Why what was compiled last cannot be executed.
+  /// Returns why what was compiled last cannot be executed, and forgets it; nothing if it can.
   std::optional<Unsupported> TakeUnsupported();
-  /// By branch: the statement, and whether it is its `else`.
+  /// Returns, by number of the branch, the statement, and whether it is its `else`.
   const std::vector<std::pair<const Stmt*, bool>>& branches() const { return branches_; }
-  /// By kLog: the type of what is logged.
+  /// Returns, by log type (an operand of kLog and kShow), the type of the value that is written.
   const std::vector<TypeId>& logged() const { return logged_; }
-  /// Did some statement assign this variable?
+  /// Reports whether some statement compiled so far assigns this variable.
   bool assigned(size_t variable) const { return assigned_.contains(variable); }
-  /// Functions without a body that are called.
+  /// Returns the functions without a body that the code calls, by number.
   const std::vector<size_t>& externals() const { return externals_; }
-  /// Summaries that cannot be evaluated, so that calls are not checked against them.
+  /// Returns the summaries that cannot be evaluated, so that calls are not checked against them, with the
+  /// reasons.
   const std::map<size_t, Unsupported>& unchecked_summaries() const { return unchecked_summaries_; }
 
  private:
@@ -77,7 +83,7 @@ class Compiler {
   void ReadCell(size_t variable);
   void Index(ExprId id);
   void Slice(ExprId base, uint32_t field);
-  /// `a[i][j]` of a variable that lies flat.
+  /// Represents `a[i][j]` of a variable that lies flat.
   struct Element {
     size_t variable;
     std::vector<ExprId> indices;  // the outer one first

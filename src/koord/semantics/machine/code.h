@@ -7,35 +7,38 @@
 #include "diag/source.h"
 #include "koord/semantics/machine/heap.h"
 
-/// The flat form of a program: instructions of a stack machine over words. A value of a type occupies as many
-/// words as `Layout::Width` says, the first one deepest.
+/// Defines the compiled form of a program: instructions of a stack machine over words. A value of a type
+/// occupies as many words as `Layout::Width` says, the first one deepest.
 namespace rondo::koord::semantics {
 
+/// Names the instructions; `ops.def` says what each one does with its operands.
 enum class Op : uint8_t {
-  kEnd,  ///< of an entry
+  kEnd,  ///< ends the code of an entry, and so the run
 #define RONDO_OP(name) k##name,
 #include "koord/semantics/machine/ops.def"
 #undef RONDO_OP
 };
 
-/// Why an event cannot be completed.
+/// Says why a run cannot be completed.
 enum class Fault : uint8_t {
   kNone,
   kIndex,     ///< an index out of range
-  kDivision,  ///< by zero
-  kRemove,    ///< an item that is not in the list
-  kReturn,    ///< a function that ends without a value
+  kDivision,  ///< a division by zero
+  kRemove,    ///< `remove` of an item that is not in the list
+  kReturn,    ///< a function that ends without returning a value
   kOverflow,  ///< an int beyond 64 bits, or a float that is not finite
   kExternal,  ///< an external function that has no value there
-  kGrid,      ///< a step that is not positive
-  kNoValue,   ///< a set of values that is empty
+  kGrid,      ///< a grid whose step is not positive
+  kNoValue,   ///< an empty set of values to choose from
   kTooLong,   ///< a list or grid of more than a million items
   kTooMany,   ///< more choices of `any` than are followed
   kNoLock,    ///< no fault: another robot holds the lock of the event, which is a skip then
-  kRunaway,   ///< more than a hundred million instructions
+  kRunaway,   ///< more than a hundred million iterations and calls (`kMostSteps`)
 };
+/// Returns the fault in words, for messages.
 std::string_view Describe(Fault fault);
 
+/// Holds one instruction; what its operands mean depends on `op`.
 struct Instruction {
   Op op = Op::kEnd;
   uint32_t a = 0;
@@ -44,21 +47,22 @@ struct Instruction {
   uint32_t d = 0;
 };
 
-/// An array whose items may be arrays: the lengths, the outer one first, and the words of an innermost item.
+/// Describes an array whose items may be arrays: the lengths, the outer one first, and the number of words of
+/// an innermost item.
 struct Shape {
   std::vector<uint32_t> dimensions;
   uint32_t width = 1;
 };
 
-/// The code of all events, functions and formulas of one team.
+/// Holds the code of all events, functions and formulas of one team.
 struct Code {
   std::vector<Instruction> instructions;
-  std::vector<diag::Span> spans;  ///< by instruction
+  std::vector<diag::Span> spans;  ///< by instruction: where in the program it comes from
   std::vector<Word> constants;
   std::vector<Shape> shapes;
-  std::vector<uint32_t> function_entry;  ///< by function; 0 for external ones
+  std::vector<uint32_t> function_entry;  ///< by function: its first instruction; 0 for external ones
   uint32_t frame_words = 0;
-  bool rounded_literals = false;  ///< some number in the program is no double
+  bool rounded_literals = false;  ///< some number in the program is no double, and was rounded to one
 };
 
 }  // namespace rondo::koord::semantics

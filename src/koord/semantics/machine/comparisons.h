@@ -2,6 +2,7 @@
 
 #include "koord/semantics/machine/registers.h"
 
+/// Carries out comparisons, least and largest values, and negation. Truth values are the words 0 and 1.
 namespace rondo::koord::semantics {
 
 RONDO_INSTRUCTION RunLessInt(Registers& r, const Instruction&) {

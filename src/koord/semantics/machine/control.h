@@ -3,9 +3,11 @@
 #include "koord/semantics/machine/host.h"
 #include "koord/semantics/machine/registers.h"
 
-/// Instructions that say what comes next, and what leaves the machine: calls, locks, logs.
+/// Carries out the instructions that say what comes next (jumps, loops, calls) and those that leave the
+/// machine: the host, locks, logs. `ops.def` says what each does.
 namespace rondo::koord::semantics {
 
+/// Continues with the instruction number `at`.
 inline void GoTo(Registers& r, uint32_t at) { r.next = r.m.code.instructions.data() + at; }
 
 RONDO_INSTRUCTION RunJump(Registers& r, const Instruction& i) {
@@ -44,6 +46,7 @@ RONDO_INSTRUCTION RunReturn(Registers& r, const Instruction&) {
   return Fault::kNone;
 }
 
+/// Has the host compute function `i.a` of `i.b` words of arguments, and pushes its `i.c` words.
 inline Fault CallHost(Registers& r, const Instruction& i) {
   r.top -= i.b;
   r.m.buffer.assign(i.c, 0);

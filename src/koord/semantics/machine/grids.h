@@ -4,7 +4,7 @@
 
 #include "koord/semantics/machine/numbers.h"
 
-/// `any` and grids: sets of values, and one of them.
+/// Carries out the instructions that make sets of values (grids) and choose one value of a set (`any`).
 namespace rondo::koord::semantics {
 
 RONDO_INSTRUCTION RunAnyItem(Registers& r, const Instruction& i) {
@@ -34,14 +34,15 @@ RONDO_INSTRUCTION RunGridInt(Registers& r, const Instruction&) {
   r.m.buffer.clear();
   for (int64_t x = low; x <= high;) {
     r.m.buffer.push_back(FromInt(x));
-    if (r.m.buffer.size() > kLongest) return Fault::kTooLong;
+    if (r.m.buffer.size() > kLongestList) return Fault::kTooLong;
     if (__builtin_add_overflow(x, step, &x)) break;
   }
   r.top[-1] = r.m.heap.Intern(r.m.buffer);
   return Fault::kNone;
 }
 
-/// Pops low, high (of one or three axes) and the step; pushes the list of points, the last axis fastest.
+/// Pops the least values, the largest values (of one or three axes) and the step; pushes the list of points
+/// between, the last axis fastest. A point that rounding puts just behind the end belongs to the grid.
 inline Fault MakeGrid(Registers& r, ptrdiff_t axes) {
   const double step = ToFloat(*--r.top);
   r.top -= 2 * axes;
@@ -52,10 +53,11 @@ inline Fault MakeGrid(Registers& r, ptrdiff_t axes) {
     low[k] = ToFloat(r.top[k]);
     // A point that rounding puts just behind the end belongs to the grid.
     const double steps = std::floor((ToFloat(r.top[k + axes]) - low[k]) / step + 1e-9);
-    if (!(steps < static_cast<double>(kLongest))) return Fault::kTooLong;
+    if (!(steps < static_cast<double>(kLongestList))) return Fault::kTooLong;
     count[k] = steps < 0 ? 0 : static_cast<size_t>(steps) + 1;
   }
-  if (count[0] * count[1] > kLongest || count[0] * count[1] * count[2] > kLongest) return Fault::kTooLong;
+  if (count[0] * count[1] > kLongestList || count[0] * count[1] * count[2] > kLongestList)
+    return Fault::kTooLong;
   r.m.buffer.clear();
   for (size_t x = 0; x < count[0]; ++x) {
     for (size_t y = 0; y < count[1]; ++y) {

@@ -4,18 +4,21 @@
 
 #include "koord/semantics/machine/heap.h"
 
+/// Connects the machine with what surrounds a program.
 namespace rondo::koord::semantics {
 
-/// What a program cannot know by itself: external functions, and where its streams go.
+/// Provides what a program cannot compute by itself: external functions, and a place for what it writes to
+/// streams.
 class Host {
  public:
   Host() = default;
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
   virtual ~Host() = default;
-  /// Computes external function `f` for a robot. `result` is zero on entry. false: it has no value there.
+  /// Computes external function `f` for a robot. `result` has the words of its type, zero on entry. Returns
+  /// false if the function has no value there, which is `Fault::kExternal`.
   virtual bool Call(size_t f, size_t robot, std::span<const Word> arguments, std::span<Word> result) = 0;
-  /// `stream << value`: the value of log type `type`.
+  /// Receives what a robot writes by `stream << value`; the value is of log type `type` (`Team::ShowLogged`).
   virtual void Log(size_t robot, size_t type, std::span<const Word> value) = 0;
 };
 

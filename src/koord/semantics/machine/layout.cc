@@ -26,7 +26,7 @@ void Layout::Kinds(const lang::TypeTable& types, TypeId type, std::vector<WordKi
     case TypeKind::kFloat:
       return kinds.push_back(WordKind::kFloat);
     case TypeKind::kEnum:
-      return kinds.push_back(WordKind::kEnum);
+      return kinds.push_back(t.fields.size() <= 256 ? WordKind::kEnum : WordKind::kInt);
     case TypeKind::kInt:
     case TypeKind::kError:
     case TypeKind::kVariable:

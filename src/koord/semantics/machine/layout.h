@@ -8,37 +8,41 @@
 #include "koord/check/model.h"
 #include "koord/semantics/machine/heap.h"
 
+/// Fixes where each variable of a team lies in the words of a state.
 namespace rondo::koord::semantics {
 
-/// What one word of a value means.
+/// Names what one word of a value means.
 enum class WordKind : uint8_t { kBool, kInt, kFloat, kEnum, kHandle };
 
-/// The lengths of arrays, by the text that types have for them.
+/// Gives the length of arrays, by the text that types have for it (such as `N_sys`).
 using Lengths = std::map<std::string, uint32_t>;
 
-/// Where the variables of a team are. A state is a sequence of words: first what all robots may write, then
-/// one block for each robot with its local variables, ports, cells and the mark that it has stopped.
+/// Says where the variables of a team are. A state is a sequence of words: first what all robots may write,
+/// then one block for each robot with its local variables, ports, cells and the mark that it has stopped.
+/// Parameters are kept apart from states.
 class Layout {
  public:
+  /// Says where one variable lies, and in which form.
   struct Place {
-    uint32_t at = 0;                   ///< in shared memory, in the block, or among the parameters
-    uint32_t width = 0;                ///< words of one item
-    uint32_t length = 0;               ///< innermost items of an array; 0 for anything else
+    uint32_t at = 0;                   ///< where in shared memory, the block, or the parameters
+    uint32_t width = 0;                ///< the words of one innermost item, or of the variable
+    uint32_t length = 0;               ///< how many innermost items an array has; 0 for anything else
     std::vector<uint32_t> dimensions;  ///< of an array: the length of each level, the outer one first
     TypeId item;                       ///< the type of an item, or of the variable
     bool own = false;
-    bool exists = true;  ///< false for ports that are called and for streams
+    bool exists = true;  ///< false for ports that are called and for streams, which have no words
 
     uint32_t words() const { return exists ? width * std::max<uint32_t>(1, length) : 0; }
   };
 
-  /// Arrays of variables lie flat, item by item, arrays of arrays too; arrays inside records and lists are
-  /// handles.
+  /// Lays out the variables of `model` for `robots` robots. Arrays of variables lie flat, item by item,
+  /// arrays of arrays too; arrays inside records and lists are handles.
   /// @param lengths  by the text of a type's length; arrays of other lengths are handles.
   Layout(const Model& model, size_t robots, const Lengths& lengths);
 
-  /// Words of a value of this type; arrays and lists are handles.
+  /// Returns how many words a value of this type has; arrays, lists and texts are one handle each.
   static uint32_t Width(const lang::TypeTable& types, TypeId type);
+  /// Appends the kind of each word of a value of this type.
   static void Kinds(const lang::TypeTable& types, TypeId type, std::vector<WordKind>& kinds);
 
   size_t robots() const { return robots_; }
@@ -46,15 +50,15 @@ class Layout {
   uint32_t shared_words() const { return shared_; }
   uint32_t block_words() const { return block_; }
   uint32_t param_words() const { return params_; }
-  /// The address of robot `r`'s block.
+  /// Returns the address of the block of robot `r` in a state.
   uint32_t block(size_t r) const { return shared_ + static_cast<uint32_t>(r) * block_; }
-  uint32_t stopped() const { return stopped_; }  ///< in a block
+  uint32_t stopped() const { return stopped_; }  ///< where in a block the mark is that the robot has stopped
   const Place& operator[](size_t variable) const { return places_[variable]; }
-  /// The address of a variable in a state, for robot `r` if each robot has one.
+  /// Returns the address of a variable in a state: that of robot `r`, if each robot has one.
   uint32_t Address(size_t variable, size_t r) const {
     return places_[variable].own ? block(r) + places_[variable].at : places_[variable].at;
   }
-  /// By word of shared memory, and of a block.
+  /// Returns the kind of each word of shared memory, and of a block.
   const std::vector<WordKind>& shared_kinds() const { return shared_kinds_; }
   const std::vector<WordKind>& block_kinds() const { return block_kinds_; }
 

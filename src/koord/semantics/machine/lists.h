@@ -2,7 +2,8 @@
 
 #include "koord/semantics/machine/registers.h"
 
-/// Lists and texts. They are kept once in the heap and never change: an instruction that changes one makes another.
+/// Carries out the instructions on lists and texts. These are kept once in the heap and never change: an
+/// instruction that changes one makes another, at a cost linear in its length.
 namespace rondo::koord::semantics {
 
 RONDO_INSTRUCTION RunListMake(Registers& r, const Instruction& i) {
@@ -50,14 +51,15 @@ RONDO_INSTRUCTION RunListSet(Registers& r, const Instruction& i) { return SetLis
 RONDO_INSTRUCTION RunListAppend(Registers& r, const Instruction& i) {
   r.top -= i.a;
   const auto items = r.m.heap[r.top[-1]];
-  if (items.size() >= kLongest) return Fault::kTooLong;
+  if (items.size() / i.a >= kLongestList) return Fault::kTooLong;
   r.m.buffer.assign(items.begin(), items.end());
   r.m.buffer.insert(r.m.buffer.end(), r.top, r.top + i.a);
   r.top[-1] = r.m.heap.Intern(r.m.buffer);
   return Fault::kNone;
 }
 
-/// The first word of the item of `words` words that equals the one at `item`; the length, if there is none.
+/// Returns the index of the first word of the item, `words` words long, that equals the one at `item`; the
+/// length of `items` if there is none.
 inline size_t FindItem(std::span<const Word> items, const Word* item, uint32_t words) {
   size_t at = 0;
   while (at < items.size() && !std::equal(item, item + words, items.begin() + static_cast<ptrdiff_t>(at)))
@@ -90,7 +92,7 @@ RONDO_INSTRUCTION RunListRemove(Registers& r, const Instruction& i) {
 RONDO_INSTRUCTION RunConcatenate(Registers& r, const Instruction&) {
   --r.top;
   const std::string text = r.m.heap.Text(r.top[-1]) + r.m.heap.Text(r.top[0]);
-  if (text.size() > kLongest) return Fault::kTooLong;
+  if (text.size() > kLongestList) return Fault::kTooLong;
   r.top[-1] = r.m.heap.InternText(text);
   return Fault::kNone;
 }

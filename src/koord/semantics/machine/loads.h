@@ -3,7 +3,8 @@
 #include "koord/semantics/machine/nested_lists.h"
 #include "koord/semantics/machine/registers.h"
 
-/// Instructions that push: constants, variables, parts of values.
+/// Carries out the instructions that push constants, variables and parts of values. `ops.def` says what each
+/// does.
 namespace rondo::koord::semantics {
 
 RONDO_INSTRUCTION RunConstant(Registers& r, const Instruction& i) {
@@ -42,6 +43,7 @@ RONDO_INSTRUCTION RunCell(Registers& r, const Instruction& i) {
   return Fault::kNone;
 }
 
+/// Pushes the handle of the list with these words.
 inline void PushList(Registers& r, const Word* from, uint32_t words) {
   *r.top++ = r.m.heap.Intern({from, words});
 }
@@ -77,6 +79,7 @@ RONDO_INSTRUCTION RunOwnArray(Registers& r, const Instruction& i) {
   return Fault::kNone;
 }
 
+/// Pops an index and pushes that item of the array of `i.c` items of `i.b` words at `array`.
 inline Fault PushItem(Registers& r, const Instruction& i, const Word* array) {
   const int64_t k = ToInt(*--r.top);
   const bool inside = k >= 0 && static_cast<uint64_t>(k) < i.c;

@@ -5,10 +5,12 @@
 
 #include "koord/semantics/machine/registers.h"
 
-/// Arithmetic: integers of 64 bits that never wrap, Euclidean division, doubles that are always finite.
+/// Carries out arithmetic: on integers of 64 bits that never wrap, with Euclidean division, and on doubles
+/// that are always finite. What leaves these ranges is `Fault::kOverflow`.
 namespace rondo::koord::semantics {
 
-/// Pops two integers and pushes what `operation` makes of them: true, if that is beyond 64 bits.
+/// Pops two integers a and b and pushes what `operation(a, b, &result)` writes. The operation returns true if
+/// that is beyond 64 bits, which is an overflow.
 template <typename Operation>
 [[gnu::always_inline]] inline Fault Integers(Registers& r, Operation operation) {
   const int64_t b = ToInt(*--r.top);
@@ -31,7 +33,8 @@ RONDO_INSTRUCTION RunMulInt(Registers& r, const Instruction&) {
   return Integers(r, [](int64_t a, int64_t b, int64_t* to) { return __builtin_mul_overflow(a, b, to); });
 }
 
-/// The remainder of the Euclidean division: never negative. `b` is not 0, and a / b does not overflow.
+/// Returns the remainder of the Euclidean division, which is never negative. `b` must not be 0, and a / b
+/// must not overflow.
 inline int64_t EuclideanRest(int64_t a, int64_t b) {
   const int64_t rest = a % b;
   return rest < 0 ? (b > 0 ? rest + b : rest - b) : rest;
@@ -77,7 +80,7 @@ RONDO_INSTRUCTION RunAbsInt(Registers& r, const Instruction&) {
   return Fault::kNone;
 }
 
-/// Replaces the top of the stack by a double, if it is finite.
+/// Replaces the top of the stack by a double; an overflow, if it is not finite.
 inline Fault SetFinite(Registers& r, double value) {
   if (!std::isfinite(value)) return Fault::kOverflow;
   r.top[-1] = FloatWord(value);

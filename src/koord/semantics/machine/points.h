@@ -2,7 +2,7 @@
 
 #include "koord/semantics/machine/numbers.h"
 
-/// Points: three doubles, x deepest.
+/// Carries out arithmetic on points, which are three doubles, x deepest.
 namespace rondo::koord::semantics {
 
 RONDO_INSTRUCTION RunSplat(Registers& r, const Instruction&) {
@@ -11,7 +11,8 @@ RONDO_INSTRUCTION RunSplat(Registers& r, const Instruction&) {
   return Fault::kNone;
 }
 
-/// Pops two points and pushes what `operation` makes of their coordinates.
+/// Pops two points and pushes the one whose coordinates `operation` makes of theirs; an overflow, if one is
+/// not finite.
 template <typename Operation>
 inline Fault Coordinates(Registers& r, Operation operation) {
   r.top -= 3;

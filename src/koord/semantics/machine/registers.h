@@ -8,41 +8,43 @@
 #include "koord/semantics/machine/code.h"
 #include "koord/semantics/machine/layout.h"
 
+/// Keeps what the instructions of the machine work with, and helps that they share.
 namespace rondo::koord::semantics {
 
 class Host;
 
-/// What the last run wrote at an address, for the first time: what was there before.
+/// Remembers what was at an address before the run that goes on wrote it for the first time.
 struct Write {
   uint32_t at;
   Word before;
 };
 
-/// A variable, or a cell of an array, that every robot may write.
+/// Names a variable, or a cell of an array, that every robot may write: its address in the state and its
+/// number of words. Last writers are told apart by unit.
 struct Unit {
   uint32_t at;
   uint32_t width;
   friend bool operator==(Unit, Unit) = default;
 };
 
-/// What a machine keeps from one run to the next, and what a run leaves behind.
+/// Holds what a machine keeps from one run to the next, and what a run leaves behind.
 struct MachineState {
   const Code& code;
   const Layout& layout;
   Heap& heap;
   Host* host = nullptr;
-  std::function<std::string(size_t, std::span<const Word>)> show;
-  std::function<uint64_t(uint64_t)> chooser;
-  std::vector<Word> params;
+  std::function<std::string(size_t, std::span<const Word>)> show = {};
+  std::function<uint64_t(uint64_t)> chooser = {};
+  std::vector<Word> params = {};
   Word* memory = nullptr;
   const Word* old = nullptr;
-  std::vector<uint32_t> calls;  ///< where to return to
-  std::vector<Word> buffer;     ///< of a list that is being made
-  std::vector<Write> writes;
-  std::vector<Unit> units;
-  std::vector<uint32_t> logged;  ///< by address: the run that wrote it last
+  std::vector<uint32_t> calls = {};  ///< where to return to
+  std::vector<Word> buffer = {};     ///< of a list that is being made
+  std::vector<Write> writes = {};
+  std::vector<Unit> units = {};
+  std::vector<uint32_t> logged = {};  ///< by address: the run that wrote it last
   uint32_t run = 0;
-  std::vector<bool> marks;
+  std::vector<bool> marks = {};
   bool used_default = false;
   bool locked = false;
   bool lock_taken = false;
@@ -52,14 +54,14 @@ struct MachineState {
   int violated_summary = -1;
 };
 
-/// What the instructions of one run work with. A local variable of the loop, so that compilers keep it in registers:
-/// every function that takes it is inlined there.
+/// Holds what the instructions of one run work with. It is a local variable of the loop, so that compilers
+/// keep it in registers: every function that takes it is inlined there.
 struct Registers {
   MachineState& m;
   Word* top;           ///< the first free word of the stack
-  Word* frame;         ///< local variables
-  const Word* memory;  ///< that is read: of now, or of the end of the program transition
-  uint32_t own;        ///< where the robot's block begins
+  Word* frame;         ///< local variables and parameters of functions
+  const Word* memory;  ///< the state that is read: that of now, or that at the end of the program transition
+  uint32_t own;        ///< the address at which the robot's block begins
   size_t robot;
   bool total;  ///< operations without a value have the value zero
   uint64_t steps = 0;
@@ -76,18 +78,20 @@ struct Registers {
     r.m.used_default = true;             \
   } while (false)
 
-/// The longest list, in items, and the longest text, in bytes.
-inline constexpr size_t kLongest = 1'000'000;
-/// Iterations and calls of one run.
+/// Bounds the length of lists, in items, and of texts, in bytes.
+inline constexpr size_t kLongestList = 1'000'000;
+/// Bounds the iterations of loops and calls of functions in one run, both together.
 inline constexpr uint64_t kMostSteps = 100'000'000;
 
-/// A double as a word. Zero has one sign, so that equal numbers are equal words.
+/// Returns a double as a word. Zero gets one sign, so that equal numbers are equal words.
 inline Word FloatWord(double x) { return FromFloat(x + 0.0); }
 
+/// Pushes `words` words.
 inline void Push(Registers& r, const Word* from, uint32_t words) {
   for (uint32_t k = 0; k < words; ++k) *r.top++ = from[k];
 }
 
+/// Pushes `words` zeros, the value of what has none.
 inline void PushZeros(Registers& r, uint32_t words) {
   for (uint32_t k = 0; k < words; ++k) *r.top++ = 0;
 }

@@ -2,10 +2,11 @@
 
 #include "koord/semantics/machine/registers.h"
 
-/// Instructions that write variables. Each write is remembered, so that it can be taken back, and each unit that every
-/// robot may write, so that two robots' writes can be compared.
+/// Carries out the instructions that write variables. Each write is remembered, so that it can be taken back,
+/// and each unit that every robot may write, so that two robots' writes can be compared.
 namespace rondo::koord::semantics {
 
+/// Writes `width` words at address `at`, and remembers what was there before the run.
 inline void WriteMemory(Registers& r, uint32_t at, const Word* from, uint32_t width) {
   MachineState& m = r.m;
   for (uint32_t k = 0; k < width; ++k) {
@@ -16,12 +17,13 @@ inline void WriteMemory(Registers& r, uint32_t at, const Word* from, uint32_t wi
   }
 }
 
+/// Remembers that the run wrote this unit, once.
 inline void NoteUnit(Registers& r, uint32_t at, uint32_t width) {
   const Unit unit{at, width};
   if (std::find(r.m.units.begin(), r.m.units.end(), unit) == r.m.units.end()) r.m.units.push_back(unit);
 }
 
-/// `cell`: words of each of them.
+/// Remembers that the run wrote all cells, of `cell` words each, among `words` words from `at` on.
 inline void NoteCells(Registers& r, uint32_t at, uint32_t words, uint32_t cell) {
   for (uint32_t k = 0; k < words; k += cell) NoteUnit(r, at + k, cell);
 }
@@ -51,8 +53,8 @@ RONDO_INSTRUCTION RunSetParam(Registers& r, const Instruction& i) {
   return Fault::kNone;
 }
 
-/// Pops index and value, and writes item `i.b` words long of an array at `array`. Returns where, or nothing if there is
-/// no such item.
+/// Pops an index and a value of `i.b` words, and writes it as that item of the array of `i.c` items at
+/// `array`. Without such an item it is `Fault::kIndex`, or in a formula nothing happens.
 inline Fault SetItem(Registers& r, const Instruction& i, uint32_t array, bool shared) {
   const int64_t k = ToInt(*--r.top);
   r.top -= i.b;
@@ -72,7 +74,8 @@ RONDO_INSTRUCTION RunSetOwnAt(Registers& r, const Instruction& i) {
   return SetItem(r, i, r.own + i.a, false);
 }
 
-/// Pops a list of `i.c` items of `i.b` words, and writes them at `array`.
+/// Pops a list of `i.c` items of `i.b` words, and writes them at `array`; `Fault::kIndex` if it has another
+/// length.
 inline Fault SetArray(Registers& r, const Instruction& i, uint32_t array, bool shared) {
   const auto items = r.m.heap[*--r.top];
   if (items.size() != static_cast<size_t>(i.b) * i.c) return Fault::kIndex;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace rondo::koord::semantics {
@@ -165,6 +166,9 @@ std::optional<std::vector<Word>> FromJson(const lang::TypeTable& types, Heap& he
     case TypeKind::kVariable:
     case TypeKind::kInt:
       if (!j.is_number_integer()) return std::nullopt;
+      if (j.is_number_unsigned() &&
+          j.get<uint64_t>() > static_cast<uint64_t>(std::numeric_limits<int64_t>::max()))
+        return std::nullopt;
       return std::vector<Word>{FromInt(j.get<int64_t>())};
     case TypeKind::kFloat:
       if (!j.is_number() || !std::isfinite(j.get<double>())) return std::nullopt;

@@ -8,25 +8,27 @@
 #include "koord/semantics/machine/heap.h"
 #include "koord/semantics/machine/layout.h"
 
-/// Values as people and files see them.
+/// Converts values between words, text for people, and JSON for files.
 namespace rondo::koord::semantics {
 
-/// `(1, 2, 0.5)`, `[a, b]`, `true`; floats in the shortest form that reads back as the same number.
+/// Returns a value as text: `(1, 2, 0.5)`, `[a, b]`, `true`; floats in the shortest form that reads back as
+/// the same number.
 std::string Show(const lang::TypeTable& types, const Heap& heap, TypeId type, std::span<const Word> words);
 
-/// The same of a variable as it lies in a state, with its arrays item by item.
+/// Returns the text of a variable as it lies in a state, with its arrays item by item.
 std::string Show(const lang::TypeTable& types, const Heap& heap, const Layout::Place& place,
                  std::span<const Word> words);
 
-/// Numbers, truth values, texts, names of members, objects by field, lists. What only functions look into is
-/// a list of 64-bit words.
+/// Returns a value as JSON: numbers, truth values, texts, names of members, objects by field, lists. What
+/// only functions look into is a list of 64-bit words.
 nlohmann::json ToJson(const lang::TypeTable& types, const Heap& heap, TypeId type,
                       std::span<const Word> words);
 
 nlohmann::json ToJson(const lang::TypeTable& types, const Heap& heap, const Layout::Place& place,
                       std::span<const Word> words);
 
-/// The reverse; nullopt if the JSON is no value of the type.
+/// Reads such JSON as a value of the type, and stores its lists and texts in the heap. Returns nullopt if it
+/// is no value of the type.
 std::optional<std::vector<Word>> FromJson(const lang::TypeTable& types, Heap& heap, TypeId type,
                                           const nlohmann::json& json);
 

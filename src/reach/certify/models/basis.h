@@ -8,12 +8,15 @@
 #include <span>
 #include <vector>
 
+/// The monomials that the checker's polynomials are made of.
 namespace rondo::reach::certify {
 
-/// The monomials up to a degree, in symbols that range over [-1, 1]. Number 0 is the constant 1, number i + 1
-/// is symbol i; those of a lower degree come first, in an order that does not depend on the highest.
+/// Numbers the monomials up to a degree, in symbols that range over [-1, 1]. Number 0 is the constant 1,
+/// number i + 1 is symbol i; those of a lower degree come first, in an order that does not depend on the
+/// highest.
 class Basis {
  public:
+  /// Is an ordered pair of monomials, by their numbers.
   struct Pair {
     uint32_t left, right;
   };
@@ -23,19 +26,19 @@ class Basis {
   size_t degree() const { return degree_; }
   size_t size() const { return degree_of_.size(); }
   size_t DegreeOf(size_t monomial) const { return degree_of_[monomial]; }
-  /// Are all exponents even? Then it is never negative.
+  /// Reports whether all exponents are even. Then the monomial is never negative.
   bool IsEven(size_t monomial) const { return even_[monomial] != 0; }
-  /// The monomial with these exponents, by symbol, if its degree is not too high.
+  /// Returns the number of the monomial with these exponents, by symbol, if its degree is not too high.
   std::optional<size_t> Find(const std::vector<uint32_t>& exponents) const;
-  /// By symbol.
+  /// Returns the exponents of a monomial, one for each symbol.
   std::span<const uint32_t> Exponents(size_t monomial) const {
     return std::span(exponents_).subspan(monomial * symbols_, symbols_);
   }
-  /// All ordered pairs whose product is this monomial.
+  /// Returns all ordered pairs whose product is this monomial.
   std::span<const Pair> Pairs(size_t monomial) const {
     return std::span(pairs_).subspan(begin_[monomial], begin_[monomial + 1] - begin_[monomial]);
   }
-  /// The largest number of pairs with one product.
+  /// Returns the largest number of pairs with one product: how many roundings a coefficient of a product has.
   size_t most_pairs() const { return most_pairs_; }
 
  private:
@@ -48,12 +51,13 @@ class Basis {
   size_t most_pairs_ = 1;
 };
 
-/// The highest degree, at least 1, of which there are no more than so many monomials.
+/// Returns the highest degree, at least 1, of which there are no more than so many monomials.
 size_t DegreeWithin(size_t symbols, size_t most_monomials);
 
-/// Every basis once. Safe for several threads.
+/// Makes every basis once and keeps it. Safe for several threads.
 class Bases {
  public:
+  /// Returns the basis for so many symbols up to this degree.
   std::shared_ptr<const Basis> Of(size_t symbols, size_t degree);
 
  private:

@@ -3,9 +3,11 @@
 #include "reach/certify/models/linearise.h"
 #include "reach/certify/models/model.h"
 
+/// Programs evaluated with Taylor models.
 namespace rondo::reach::certify {
 
-/// Models of all nodes of the program, for variables in `box`.
+/// Returns models of all nodes of the program, for variables in `box`. Each holds the function at every
+/// symbol and time, whatever the variables are within their models.
 ///
 /// @param variables  models of them.
 /// @param on  the program on a box that holds whatever the variables are.
@@ -16,7 +18,7 @@ std::optional<std::vector<Model>> Evaluate(const Program& program, const Algebra
                                            const std::vector<Model>& variables, const OnBox& on,
                                            const std::vector<Model>* lower = nullptr);
 
-/// The ranges of models.
+/// Encloses the values of each model over all symbols and times.
 std::vector<Interval> RangesOf(const Algebra& algebra, const std::vector<Model>& models);
 
 }  // namespace rondo::reach::certify

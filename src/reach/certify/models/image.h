@@ -3,18 +3,19 @@
 #include "reach/certify/models/evaluate.h"
 #include "reach/certify/models/reach_set.h"
 
+/// What a controller or a condition makes of a set, for the checker.
 namespace rondo::reach::certify {
 
-/// The image of a set under a program at one instant. Variables: states, then inputs; each input is any value
-/// within its bounds.
+/// Encloses the image of a set under a program at one instant. Variables: states, then inputs; each input is
+/// any value within its bounds.
 class Image {
  public:
-  /// False if a function is not defined on all of the set.
+  /// Computes the image; the results are below. Returns false if a function is not defined on all of the set.
   bool Of(const Program& program, const ReachSet& set, const interval::Box& inputs);
 
-  /// Encloses an output.
+  /// Encloses an output on the set.
   Interval Range(size_t output) const;
-  /// All outputs as a set.
+  /// Returns all outputs as a set, in the symbols of the one that was given.
   ReachSet Set() const;
 
  private:

@@ -6,37 +6,38 @@
 
 #include "reach/certify/models/model.h"
 
+/// Sets of states as the checker follows them.
 namespace rondo::reach::certify {
 
-/// A set of states: { P(s) + G g : s in [-1, 1]^m, g in [-1, 1]^k }. P: a polynomial for each state; the
-/// columns of G are errors that go the way of the states.
+/// Is a set of states: { P(s) + G g : s in [-1, 1]^m, g in [-1, 1]^k }. P: a polynomial for each state, which
+/// keeps how states depend on the start; the columns of G are errors that go the way of the states.
 struct ReachSet {
   std::shared_ptr<const Basis> basis;
   std::vector<std::vector<double>> polynomials;  ///< by state, by monomial
-  Eigen::MatrixXd generators;
+  Eigen::MatrixXd generators;                    ///< G: a row for each state, a column for each error
 
-  /// How many columns are worth their time.
+  /// Returns how many columns are worth their time, for so many states.
   static Eigen::Index MostColumns(size_t states) { return 100 * static_cast<Eigen::Index>(states); }
 
   size_t states() const { return polynomials.size(); }
-  /// At least how far a member is from its polynomial, by state.
+  /// Returns, by state, at least how far a member is from its polynomial.
   Eigen::VectorXd Errors() const;
-  /// Further errors, by state, that have nothing to do with one another.
+  /// Adds errors, at most these by state, that have nothing to do with one another: a column for each.
   void AddErrors(const Eigen::VectorXd& errors);
-  /// If there are more columns than this: the smaller ones become a box.
+  /// Makes a box of the smaller columns if there are more than `most`. The set becomes no smaller.
   /// @source Girard, Reachability of uncertain linear systems using zonotopes (HSCC 2005).
   void Reduce(Eigen::Index most);
-  /// Other monomials: of a higher degree, or what is above becomes an error.
+  /// Rewrites the polynomials over other monomials: of a higher degree, or what is above becomes an error.
   void SetBasis(std::shared_ptr<const Basis> to);
-  /// The part whose symbol is in [-1, 0] or [0, 1], with a symbol of its own in its place.
+  /// Returns the part whose symbol is in [-1, 0] or (upper) [0, 1], with a symbol of its own in its place.
   ReachSet Half(size_t symbol, bool upper) const;
-  /// The polynomial of a state at no particular time.
+  /// Encloses the polynomial of a state, errors left out.
   Interval RangeOf(size_t state) const;
-  /// Encloses the set.
+  /// Encloses the set, errors included.
   interval::Box Box() const;
 };
 
-/// At least how far each state gets in this time.
+/// Returns, by state, at least how far it gets in this time (seconds) at these rates (per second).
 Eigen::VectorXd DistanceIn(double seconds, const interval::Box& rates);
 
 }  // namespace rondo::reach::certify

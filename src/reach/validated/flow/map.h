@@ -6,21 +6,24 @@
 #include "reach/validated/series/box_series.h"
 #include "reach/validated/series/flow_set.h"
 
+/// What happens to a set at one instant: controllers, and expressions about the state.
 namespace rondo::reach {
 
-/// Images of sets under a program: what a controller computes at an instant, or an expression about the
-/// state. Variables: states, then inputs that can be anything within their bounds. Functions with kinks are
-/// enclosed by linear functions where it is not known on which side the set lies.
+/// Computes images of sets under a program: what a controller computes at an instant, or an expression about
+/// the state. Variables: states, then inputs that can be anything within their bounds. Functions with kinks
+/// are enclosed by linear functions where it is not known on which side the set lies.
 class Map {
  public:
   Map(const Program& program, size_t states, std::vector<Interval> inputs,
       std::shared_ptr<Monomials> monomials);
 
-  /// False if some function is not defined on all of the set. The results are below.
+  /// Computes the images of the set; the results are below. Returns false if some function is not defined on
+  /// all of the set.
   bool Apply(const FlowSet& set);
   /// Encloses an output on the set, correlations of errors included.
   Interval Range(size_t output) const;
-  /// The set of outputs, which must be as many as the states.
+  /// Makes `next` the set of outputs, which must be as many as the states. No more than `capacity` generators
+  /// stay.
   void Finish(const FlowSet& set, FlowSet& next, Eigen::Index capacity) const;
 
  private:

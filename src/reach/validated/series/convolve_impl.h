@@ -4,7 +4,8 @@
 
 #include "reach/validated/series/convolve.h"
 
-/// Compiled once for each instruction set, with the vectors that it has (GCC's and Clang's vector types).
+/// The inner loop of `convolve.h`, compiled once for each instruction set, with the vectors that it has
+/// (GCC's and Clang's vector types).
 namespace rondo::reach {
 namespace {
 
@@ -19,10 +20,11 @@ constexpr size_t kParts = kWidth / kNative;
 
 using Lanes __attribute__((vector_size(kNative * sizeof(double)))) = double;
 
-// Eight sums. Vectors are not passed by value: how depends on the instruction set.
+/// Holds eight partial sums. Vectors are not passed by value: how depends on the instruction set.
 struct Sums {
   Lanes parts[kParts] = {};
 
+  /// Adds the products of eight numbers of `a` and of `b`.
   void AddProducts(const double* a, const double* b) {
     for (size_t i = 0; i < kParts; ++i) {
       Lanes x;
@@ -32,6 +34,7 @@ struct Sums {
       parts[i] += x * y;
     }
   }
+  /// Returns the sum of all eight.
   double Total() const {
     double v[kWidth];
     std::memcpy(v, parts, sizeof v);
@@ -39,6 +42,7 @@ struct Sums {
   }
 };
 
+/// Is a `Convolve` for the instruction set that this is compiled for.
 [[maybe_unused]] void ConvolveHere(const Pairs& pairs, size_t count, const double* left, size_t left_stride,
                                    const double* right, size_t right_stride, size_t blocks, double* out) {
   if (blocks == 1) {

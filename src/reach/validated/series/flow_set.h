@@ -7,10 +7,11 @@
 #include "reach/problem/program.h"
 #include "reach/validated/series/monomials.h"
 
+/// Sets of states as the engine follows them.
 namespace rondo::reach {
 
-/// A set of states: { P(s) + G g + b : s in [-1, 1]^m, g in [-1, 1]^k, |b_i| <= slack_i }. P: polynomials in
-/// the symbols of the initial set, which keep how states depend on it. G: errors that are carried along
+/// Is a set of states: { P(s) + G g + b : s in [-1, 1]^m, g in [-1, 1]^k, |b_i| <= slack_i }. P: polynomials
+/// in the symbols of the initial set, which keep how states depend on it. G: errors that are carried along
 /// linearly (symbolic remainder). slack: errors since the last step.
 /// @source Chen & Sankaranarayanan, Decomposed reachability analysis for nonlinear systems (RTSS 2016).
 struct FlowSet {
@@ -18,41 +19,41 @@ struct FlowSet {
   size_t degree = 1;
   size_t count = 0;                 ///< monomials of degree <= degree
   std::vector<double> polynomials;  ///< by state, `count` each
-  Eigen::MatrixXd generators;       ///< dimension x (at least) used
-  Eigen::Index used = 0;
-  std::vector<double> slack;
+  Eigen::MatrixXd generators;       ///< G: dimension rows; columns from `used` on mean nothing
+  Eigen::Index used = 0;            ///< k: how many columns count
+  std::vector<double> slack;        ///< by state
 
   std::span<const double> Polynomial(size_t i) const {
     return std::span(polynomials).subspan(i * count, count);
   }
   std::span<double> Polynomial(size_t i) { return std::span(polynomials).subspan(i * count, count); }
 
-  /// At least the sum of all errors of state i.
+  /// Returns at least the sum of all errors of state i.
   double Error(size_t i) const;
-  /// Raises the degree; nothing changes.
+  /// Raises the degree; the set stays the same.
   void Raise(const Monomials& monomials, size_t to);
   /// Lowers the degree: what was above becomes an error.
   void Lower(const Monomials& monomials, size_t to);
-  /// The sum of magnitudes of the terms of the highest degree, of state i.
+  /// Returns the sum of magnitudes of the terms of the highest degree, of state i.
   double Top(const Monomials& monomials, size_t i) const;
 
-  /// The set becomes { centre x + error }: centre is a double matrix, and the images of P are given. `errors`
-  /// are added; roundings are accounted for. The old slack becomes generators. No more than `capacity`
-  /// generators stay.
+  /// Makes the errors those of { centre x + error }: centre is a double matrix by which errors are mapped,
+  /// and the caller replaces P by its image. `errors` are added, by state; roundings are accounted for. The
+  /// old slack becomes generators. No more than `capacity` generators stay.
   void Transform(const Eigen::MatrixXd& centre, std::span<const double> errors, Eigen::Index capacity);
-  /// The same, and these columns (dimension rows) are added.
+  /// Adds a column to G (dimension entries): the set grows by it in both directions.
   void AddGenerator(const Eigen::VectorXd& column);
 
  private:
   void Compress(Eigen::Index capacity);
 };
 
-/// The box as polynomials of degree 1; a symbol for each side that is not a point. symbol_of: by state, -1
-/// for none.
+/// Returns the box as polynomials of degree 1; a symbol for each side that is not a point. symbol_of: by
+/// state, -1 for none.
 FlowSet FromBox(const interval::Box& box, const Monomials& monomials, const std::vector<int>& symbol_of);
 
-/// The part of the set whose symbol `symbol` is in [-1, 0] or (upper) [0, 1], with a symbol of its own for
-/// it.
+/// Returns the part of the set whose symbol `symbol` is in [-1, 0] or (upper) [0, 1], with a symbol of its
+/// own for it.
 FlowSet Half(const FlowSet& set, const Monomials& monomials, size_t symbol, bool upper);
 
 /// Encloses a polynomial over [-1, 1]^m.

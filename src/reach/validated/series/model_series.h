@@ -7,49 +7,53 @@
 #include "reach/validated/series/convolve.h"
 #include "reach/validated/series/monomials.h"
 
+/// Taylor series in time whose coefficients are Taylor models in the initial state.
 namespace rondo::reach {
 
-/// What to take for the nodes without derivatives, by node.
+/// Says what to take for the nodes without derivatives, by node.
 enum class Branch : int8_t {
   kFirst,   ///< of kAbs: the argument itself; of kChoose: the first value
   kSecond,  ///< of kAbs: its negation; of kChoose: the other value
   kEither,  ///< not known: a map takes whatever the value can be, a flow the value in `held`
 };
 
-/// A Taylor model: the set of all p(s) + e, s in [-1, 1]^m, |e| <= radius, where p is a polynomial.
+/// Is a Taylor model: the set of all p(s) + e, s in [-1, 1]^m, |e| <= radius, where p is a polynomial.
 struct ModelView {
   std::span<const double> polynomial;
   double radius;
 };
 
-/// The Taylor coefficients in time of every node of a program, as Taylor models in the symbols s: coefficient
-/// k of node v encloses, for each s, the k-th Taylor coefficient of v along the solution that starts at the
-/// model of the initial state at s. Coefficients of order k may depend on the variables' coefficients up to
-/// order k only, so that a caller can fill in those of a differential equation one after the other.
+/// Computes the Taylor coefficients in time of every node of a program, as Taylor models in the symbols s:
+/// coefficient k of node v encloses, for each s, the k-th Taylor coefficient of v along the solution that
+/// starts at the model of the initial state at s. Coefficients of order k may depend on the variables'
+/// coefficients up to order k only, so that a caller can fill in those of a differential equation one after
+/// the other.
 ///
-/// Rigorous: truncation of degrees and all rounding (Appendix: docs/theory.md, "Reachability") go to the
-/// radii.
+/// Rigorous: truncation of degrees and all rounding (docs/theory.md, "Reachability") go to the radii.
 /// @source Makino & Berz, Taylor models and other validated functional inclusion methods (2003).
 class ModelSeries {
  public:
   ModelSeries(const Program& program, std::shared_ptr<Monomials> monomials, size_t orders);
 
-  /// Forgets everything; polynomials of this degree from now on, orders 0..`last`.
+  /// Forgets everything; polynomials of this degree from now on, orders 0 to `last`.
   void Begin(size_t degree, size_t last);
 
   size_t count() const { return count_; }  ///< of monomials
   size_t degree() const { return degree_; }
+  /// Sets a coefficient of a variable, as a model.
   void SetVariable(size_t variable, size_t order, std::span<const double> polynomial, double radius);
-  /// A variable's next coefficient is its derivative's (output `output`) last, divided by order + 1.
+  /// Sets a variable's coefficient of order + 1: its derivative's (output `output`) of this order, divided by
+  /// order + 1.
   void SetFromDerivative(size_t variable, size_t output, size_t order);
-  /// Computes the nodes from `first` to before `end` at this order. False if some function is not defined on
-  /// all of its argument.
+  /// Computes the nodes from `first` to before `end` at this order. Returns false if some function is not
+  /// defined on all of its argument.
   bool Compute(size_t order, const std::vector<Branch>& branches, const std::vector<Interval>& held,
                uint32_t first, uint32_t end);
   bool Compute(size_t order, const std::vector<Branch>& branches, const std::vector<Interval>& held) {
     return Compute(order, branches, held, 0, static_cast<uint32_t>(program_.code.size()));
   }
 
+  /// Returns the coefficient of a node, valid until the next `Begin`.
   ModelView At(size_t node, size_t order) const {
     return {std::span(values_).subspan(Place(node, order), count_), radius_[node * orders_ + order]};
   }

@@ -5,6 +5,7 @@
 
 #include "interval/interval.h"
 
+/// How errors are carried along by a step: transition matrices of linear differential equations.
 namespace rondo::reach {
 
 using interval::Interval;
@@ -16,7 +17,9 @@ struct Transition {
   Eigen::MatrixXd growth;          ///< |J(t)| <= growth for all t in [0, h]
 };
 
-/// @param rates  n x n intervals, by rows.
+/// Encloses these solutions for h seconds.
+///
+/// @param rates  n x n intervals, by rows, per second.
 /// @source Peano-Baker series, halved until it converges fast, then squared.
 void Propagate(std::span<const Interval> rates, size_t n, double h, Transition& out);
 

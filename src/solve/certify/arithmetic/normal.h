@@ -16,25 +16,28 @@ namespace rondo::solve::certify {
 using expr::Rational;
 using expr::TermId;
 
+/// Name atoms, polynomials and formulas of one Normal.
 using AtomId = base::Id<struct AtomTag>;
 using PolyId = base::Id<struct PolyTag>;
 using FormulaId = base::Id<struct FormulaTag>;
 
-/// Why a step cannot be accepted.
+/// Says why a step cannot be accepted. Thrown inside the checker only: `Check` turns it into a diagnostic.
 struct Rejection : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A product of atoms, sorted; empty: 1.
+/// Is a product of atoms, sorted; empty: 1.
 using Monomial = std::vector<AtomId>;
+/// Is a sum of monomials with coefficients.
 using Poly = std::map<Monomial, Rational>;
 
-/// Adds a summand. Rejection if the polynomial grows too large.
+/// Adds a summand. Throws a Rejection if the polynomial grows too large.
 void AddTo(Poly& p, Monomial monomial, const Rational& coefficient);
-/// The number that the polynomial is, if it is one.
+/// Returns the number that the polynomial is, if it is one.
 std::optional<Rational> ConstantOf(const Poly& p);
 
-/// What a polynomial is made of: a variable, a function or quotient of polynomials, or a choice between two.
+/// Is what polynomials are made of: a variable, a function or quotient of polynomials, or a choice between
+/// two.
 struct Atom {
   enum class Kind : uint8_t { kVariable, kFunction, kQuotient, kChoice };
   Kind kind = Kind::kVariable;
@@ -46,14 +49,14 @@ struct Atom {
   friend auto operator<=>(const Atom&, const Atom&) = default;
 };
 
-/// Which of <, = and > satisfy a comparison.
+/// Says which of <, = and > satisfy a comparison: a set of bits.
 enum Relation : uint8_t { kBelow = 1, kEven = 2, kAbove = 4 };
 
-/// The relation with its sides exchanged.
+/// Returns the relation with its sides exchanged.
 uint8_t Mirrored(uint8_t relation);
 
-/// Formulas in negation normal form. A literal `poly relation bound`: no constant in the polynomial, first
-/// coefficient 1; comparisons of one integral variable have integers for bounds and are not strict.
+/// Is a formula in negation normal form. A literal is `poly relation bound`: no constant in the polynomial,
+/// first coefficient 1; comparisons of one integral variable have integers for bounds and are not strict.
 struct Formula {
   enum class Kind : uint8_t { kTrue, kFalse, kLiteral, kAnd, kOr };
   Kind kind = Kind::kTrue;
@@ -75,15 +78,17 @@ class Normal {
   Normal(const Normal&) = delete;
   Normal& operator=(const Normal&) = delete;
 
+  /// Returns the normal form of a number.
   PolyId Number(TermId term);
+  /// Returns the normal form of a formula, or of its negation if not `positive`.
   FormulaId Of(TermId formula, bool positive = true);
-  /// Do all partial functions of each literal, as written, occur in its normal form? Else the normal form
-  /// says less than what is written.
+  /// Reports whether all partial functions of each literal, as written, occur in its normal form. Else the
+  /// normal form says less than what is written.
   bool Faithful(TermId formula);
-  /// Does a function occur in it that is not defined everywhere?
+  /// Reports whether a function occurs in it that is not defined everywhere.
   bool HasPartial(TermId term);
 
-  /// `difference relation 0`.
+  /// Returns the normal form of `difference relation 0`.
   FormulaId Literal(const Poly& difference, uint8_t relation);
   FormulaId And(std::vector<FormulaId> parts) { return Junction(Formula::Kind::kAnd, std::move(parts)); }
   FormulaId Or(std::vector<FormulaId> parts) { return Junction(Formula::Kind::kOr, std::move(parts)); }
@@ -92,12 +97,12 @@ class Normal {
   const Atom& atom(AtomId id) const { return atoms_[id.index()]; }
   const Formula& formula(FormulaId id) const { return formulas_[id.index()]; }
   AtomId Variable(TermId variable);
-  /// The atom, if the polynomial is one.
+  /// Returns the atom, if the polynomial is one; else an invalid id.
   AtomId Single(const Poly& p) const;
   static Poly Minus(const Poly& a, const Poly& b);
   static Poly ConstantPoly(const Rational& value);
 
-  /// One variable replaced by a polynomial.
+  /// Replaces one variable by a polynomial.
   class Substitution {
    public:
     Substitution(Normal& normal, AtomId variable, PolyId value)

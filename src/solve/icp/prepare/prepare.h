@@ -10,9 +10,10 @@
 #include "solve/icp/prepare/proof.h"
 #include "solve/icp/prepare/rotation.h"
 
+/// Exact arithmetic before the search: what it can use is used up.
 namespace rondo::solve::icp {
 
-/// What is known of one term: bounds and values that it does not have.
+/// Holds what is known of one term: bounds, and values that it does not have.
 struct Range {
   std::optional<Rational> lo, hi;
   bool lo_strict = false;
@@ -21,27 +22,30 @@ struct Range {
 
   /// Adds `relation bound`. Does not look for contradictions.
   void Add(Relation relation, const Rational& bound);
+  /// Reports whether no number is in the range.
   bool IsContradiction() const;
-  /// The only value, if there is one.
+  /// Returns the only value, if there is one.
   std::optional<Rational> Only() const;
+  /// Returns the comparisons of `term` that say the same.
   std::vector<Literal> Literals(TermId term) const;
 };
 
-/// A conjunction from which all that exact arithmetic can use has been used.
+/// Is a conjunction from which all that exact arithmetic can use has been used.
 struct Prepared {
-  bool contradiction = false;
+  bool contradiction = false;      ///< whether it has no solution, which exact arithmetic shows
   std::map<TermId, Range> ranges;  ///< by the term of the literals: bounds of variables are among them
+  /// Formulas that must hold, too, and that are no comparisons.
   std::vector<TermId> disjunctions;
-  /// True for all values of the variables: for contraction only.
+  /// Equations that hold for all values of the variables: for contraction only.
   std::vector<Lemma> lemmas;
-  /// variable = term over the variables that are left.
+  /// Variables that were eliminated: variable = term over the variables that are left.
   std::vector<std::pair<TermId, TermId>> definitions;
 };
 
-/// Equivalent to the conjunction of `conjuncts`, up to the definitions: every solution of the result extends
-/// to one of the conjuncts by the definitions, and every solution of the conjuncts arises so. Uses linear
-/// equations to eliminate variables, turns bounds of square roots into bounds of their arguments, splits
-/// vanishing sums of squares, and merges all comparisons of one term; everything in exact arithmetic.
+/// Returns what is equivalent to the conjunction of `conjuncts`, up to the definitions: every solution of the
+/// result extends to one of the conjuncts by the definitions, and every solution of the conjuncts arises so.
+/// Uses linear equations to eliminate variables, turns bounds of square roots into bounds of their arguments,
+/// splits vanishing sums of squares, and merges all comparisons of one term; everything in exact arithmetic.
 /// `proof`, if there is one, gets the steps that a checker cannot see by itself.
 Prepared Prepare(expr::Arena& arena, const std::unordered_map<TermId, Variable>& variables,
                  std::vector<TermId> conjuncts, std::vector<std::pair<TermId, TermId>> definitions,
@@ -50,7 +54,7 @@ Prepared Prepare(expr::Arena& arena, const std::unordered_map<TermId, Variable>&
 /// Rewrites the sums in `prepared` over rotated frames and adds their lemmas; see Rotations.
 void AddRotations(expr::Arena& arena, Prepared& prepared);
 
-/// Everything in `prepared` as formulas, lemmas apart.
+/// Returns everything in `prepared` as formulas, lemmas apart.
 std::vector<TermId> Conjuncts(expr::Arena& arena, const Prepared& prepared);
 
 }  // namespace rondo::solve::icp

@@ -7,10 +7,11 @@
 #include "expr/smtlib/smtlib.h"
 #include "solve/icp/prepare/lower.h"
 
+/// How the interval solver writes certificates.
 namespace rondo::solve::icp {
 
-/// Writes down a refutation while it is found, in the language of `solve/certify`: formulas of the lowered
-/// arena become text, each step as it happens.
+/// Writes down a refutation while it is found, in the language of `solve/certify` (`proof_reader.h` says what
+/// each step means): formulas of the lowered arena become text, each step as it happens.
 class Proof {
  public:
   explicit Proof(const Lowered& lowered);
@@ -19,7 +20,7 @@ class Proof {
   void Squares(TermId formula);
   void Period(TermId variable, const Rational& lo, const Rational& hi);
   void Fact(TermId formula);
-  /// constant + the sum of coefficient * term = 0
+  /// Adds constant + the sum of coefficient * term = 0, which holds whatever the variables are.
   void Identity(const std::vector<std::pair<Rational, TermId>>& parts, const Rational& constant);
   void Cases(TermId disjunction);
   void Case(TermId alternative);
@@ -27,6 +28,7 @@ class Proof {
   void Contradiction() { text_ += "(contradiction)\n"; }
   void Search(const std::vector<TermId>& variables, const std::string& tree);
 
+  /// Returns the steps so far.
   const std::string& text() const { return text_; }
 
  private:

@@ -8,10 +8,11 @@
 
 #include "solve/icp/prepare/polynomial.h"
 
+/// Coordinates in rotated frames, which robots' formulas are full of.
 namespace rondo::solve::icp {
 
-/// constant + the sum of coefficient * term is 0, whatever the values of the variables. The terms are kept
-/// whole, so that they are shared with the rest of the formula.
+/// States that constant + the sum of coefficient * term is 0, whatever the values of the variables. The terms
+/// are kept whole, so that they are shared with the rest of the formula.
 struct Lemma {
   std::vector<std::pair<expr::Rational, expr::TermId>> parts;
   expr::Rational constant;
@@ -27,17 +28,17 @@ class Rotations {
  public:
   explicit Rotations(expr::Arena& arena) : arena_(arena) {}
 
-  /// An equal formula, its sums rewritten.
+  /// Returns an equal formula, its sums rewritten.
   expr::TermId Rewrite(expr::TermId formula);
 
-  /// What ties the frames to each other: of each vector of which both coordinates were met.
+  /// Returns what ties the frames to each other: of each vector of which both coordinates were met.
   std::vector<Lemma> Lemmas();
 
  private:
   using Rational = expr::Rational;
   using TermId = expr::TermId;
   using Complex = std::pair<Rational, Rational>;
-  /// A + i B, by monomial.
+  /// Is A + i B, by monomial.
   using Vector = std::map<expr::Monomial, Complex>;
 
   struct Frame {
@@ -47,7 +48,7 @@ class Rotations {
     bool both = false;
   };
 
-  /// The square of a vector: a sum of two squares of monic terms, with their factors.
+  /// Is the square of a vector: a sum of two squares of monic terms, with their factors.
   struct Norm {
     std::array<std::pair<Rational, TermId>, 2> squares;
     TermId sum;

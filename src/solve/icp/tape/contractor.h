@@ -5,7 +5,17 @@
 
 #include "solve/icp/tape/influence.h"
 
+/// Contraction of boxes by a formula, eight boxes at a time.
 namespace rondo::solve::icp {
+
+/// Replaces those lanes of `to` that are in `lanes` by the ones of `from`.
+inline void Blend(Lanes lanes, const interval::Batch& from, interval::Batch& to) {
+  for (int l = 0; l < interval::kLanes; ++l) {
+    if ((lanes >> l & 1) == 0) continue;
+    to.nl[l] = from.nl[l];
+    to.hi[l] = from.hi[l];
+  }
+}
 
 /// Runs a tape over eight boxes at once: forward to enclose every number and to see which formulas are still
 /// possible, backward to remove what the formula excludes (HC4-revise over the shared graph, Benhamou et al.
@@ -17,8 +27,9 @@ class Contractor {
  public:
   Contractor(const Tape& tape, const interval::Kernels& kernels);
 
-  /// `box` holds the bounds (lower, upper) of each variable in turn.
+  /// Sets one lane. `box` holds the bounds (lower, upper) of each variable in turn.
   void Load(int lane, const double* box);
+  /// Reads one lane back, in the same order.
   void Store(int lane, double* box) const;
 
   /// Contracts all lanes, forward and backward so many times; what is known of the terms in between is kept
@@ -26,10 +37,10 @@ class Contractor {
   Lanes Contract(int sweeps);
   /// Encloses all values and says in which lanes the formula is possible. Contracts nothing.
   Lanes Evaluate();
-  /// After Contract: by threshold, the lanes in which it is undecided; see InfluenceMeter.
+  /// Tells, after Contract, by threshold, the lanes in which it is undecided; see InfluenceMeter.
   void Open(std::vector<Lanes>& open) const;
 
-  /// Enclosures of the nodes.
+  /// Returns enclosures of the nodes, by node.
   const std::vector<interval::Batch>& values() const { return values_; }
   interval::Interval ValueOf(uint32_t node, int lane) const {
     return {-values_[node].nl[lane], values_[node].hi[lane]};

@@ -6,6 +6,7 @@
 
 #include "solve/icp/tape/tape.h"
 
+/// Guesses of solutions, by descent in plain floating point.
 namespace rondo::solve::icp {
 
 /// Looks for points at which a formula seems to hold: from random points of a box, steps that would mend all
@@ -13,17 +14,17 @@ namespace rondo::solve::icp {
 /// whatever is found must be verified. Deterministic.
 class Descent {
  public:
-  /// `box`: bounds (lower, upper) of each variable in turn.
+  /// `box`: bounds (lower, upper) of each variable in turn, in which points are drawn.
   Descent(const Tape& tape, const std::vector<double>& box);
 
-  /// One attempt. A number for each variable.
+  /// Makes one attempt. Returns a number for each variable; nothing if it led nowhere.
   std::optional<std::vector<double>> Try();
 
  private:
-  /// A comparison that should change by `by`.
+  /// Is a comparison whose number should change by `by`.
   struct Violation {
     uint32_t node;
-    double by;
+    double by;  ///< how much the number is to grow
     bool equation;
   };
 

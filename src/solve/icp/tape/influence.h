@@ -6,10 +6,11 @@
 #include "interval/interval.h"
 #include "solve/icp/tape/tape.h"
 
+/// Which variable to split: how much each can still change.
 namespace rondo::solve::icp {
 
 inline constexpr int kLanes = interval::kLanes;
-/// Lanes of a batch, as bits.
+/// Is a set of lanes of a batch, as bits.
 using Lanes = uint8_t;
 
 /// Tells how much each variable can change the undecided comparisons of eight boxes: the sum over them of
@@ -19,8 +20,9 @@ class InfluenceMeter {
  public:
   InfluenceMeter(const Tape& tape, const interval::Kernels& kernels);
 
-  /// `values`: enclosures of the nodes. `open`: by threshold, the lanes in which it is undecided. `scores`:
-  /// kLanes numbers for each variable. Cost: one reverse sweep for each open threshold.
+  /// Computes the scores of all variables: kLanes numbers for each. `values`: enclosures of the nodes.
+  /// `open`: by threshold, the lanes in which it is undecided. Cost: one reverse sweep for each open
+  /// threshold.
   void Measure(const std::vector<interval::Batch>& values, const std::vector<Lanes>& open,
                std::vector<double>& scores);
 

@@ -11,6 +11,7 @@
 /// them.
 namespace rondo::solve::icp {
 
+/// Names the operations of a tape: numbers first, then comparisons with constants, then formulas.
 enum class NodeOp : uint8_t {
   // Numbers: arguments a, b.
   kVariable,
@@ -44,6 +45,7 @@ enum class NodeOp : uint8_t {
   kOr,
 };
 
+/// Is one node of a tape; what a, b and n mean depends on the operation.
 struct Node {
   NodeOp op;
   uint32_t a = 0;
@@ -51,6 +53,7 @@ struct Node {
   uint32_t n = 0;
 };
 
+/// Is a constant that a number is compared with.
 struct Threshold {
   uint32_t node;  ///< the kThreshold node
   Rational value;
@@ -59,15 +62,17 @@ struct Threshold {
   bool lemma = false;  ///< of a comparison that holds anyway
 };
 
+/// Is a variable of a tape.
 struct TapeVariable {
-  TermId term;
-  uint32_t node;
-  bool integral;
-  /// Is it no use to split it? See MarkSingle.
+  TermId term;    ///< in the arena of what was prepared
+  uint32_t node;  ///< the kVariable node
+  bool integral;  ///< whether its values are integers
+  /// Whether it is no use to split it; see MarkSingle.
   bool single;
   interval::Interval root;  ///< encloses all values that the bounds allow
 };
 
+/// Is a formula as straight-line code.
 struct Tape {
   std::vector<Node> nodes;
   std::vector<interval::Interval> constants;              ///< by node; the whole line for other nodes
@@ -75,23 +80,23 @@ struct Tape {
   std::vector<std::pair<uint32_t, uint32_t>> conditions;  ///< of kChoose: when a is chosen, when b
   std::vector<Threshold> thresholds;
   std::vector<TapeVariable> variables;
-  uint32_t root = 0;
-  bool partial = false;  ///< does a function occur that is not defined everywhere?
+  uint32_t root = 0;     ///< the node of the whole formula
+  bool partial = false;  ///< whether a function occurs that is not defined everywhere
 };
 
-/// Is the node a number that is made of others?
+/// Reports whether the node is a number that is made of others.
 inline bool IsComposite(NodeOp op) { return op > NodeOp::kConstant && op < NodeOp::kThreshold; }
-/// Of two others?
+/// Reports whether the node is a number that is made of two others.
 bool IsBinary(NodeOp op);
 
 /// Marks the variables that need not be split: those used once, in a number that is used once, and so on, for
 /// which contraction is exact, given the others; and those used once, in a sum with a variable that is split.
 void MarkSingle(Tape& tape);
 
-/// An enclosure of a rational number, at most one unit in the last place wide.
+/// Encloses a rational number, at most one unit in the last place wide.
 interval::Interval Enclose(const Rational& value);
 
-/// The tape of everything in `prepared`. Cost: linear in the number of distinct subterms.
+/// Returns the tape of everything in `prepared`. Cost: linear in the number of distinct subterms.
 Tape BuildTape(expr::Arena& arena, const std::unordered_map<TermId, Variable>& variables,
                const Prepared& prepared);
 
