@@ -187,7 +187,7 @@ def certificates(rondo, folder):
         return run(rondo, "certify", path)
 
     model = folder / "groove.rondo"
-    text = (ROOT / "src" / "robot" / "reach" / "testdata" / "contracts" / "proved.rondo").read_text().split("#>")[0]
+    text = (ROOT / "src" / "robot" / "dynamics" / "testdata" / "contracts" / "proved.rondo").read_text().split("#>")[0]
     model.write_text(text)
     done = run(rondo, "reach", "--no-cache", "--contract", "Settle", "--certificates", folder / "proofs", model)
     written = sorted((folder / "proofs").glob("*.tube.json"))
@@ -219,7 +219,7 @@ def certificates(rondo, folder):
     done = certify(written[0])
     check(done.returncode == 1 and "is not shown" in done.stderr, f"a contract that fails is not certified: {done.stderr}")
     # An event: its time is checked.
-    lift = (ROOT / "src" / "robot" / "reach" / "testdata" / "contracts" / "events.rondo").read_text().split("#>")[0]
+    lift = (ROOT / "src" / "robot" / "dynamics" / "testdata" / "contracts" / "events.rondo").read_text().split("#>")[0]
     model.write_text(lift)
     run(rondo, "reach", "--no-cache", "--certificates", folder / "lift", model)
     written = next((folder / "lift").glob("*.tube.json"))
