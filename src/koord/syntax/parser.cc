@@ -1,3 +1,5 @@
+#include "koord/syntax/parser.h"
+
 #include <algorithm>
 #include <iterator>
 

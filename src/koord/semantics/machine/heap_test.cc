@@ -105,9 +105,10 @@ TEST(Layout, SharedVariablesComeBeforeTheBlocks) {
 TEST(Layout, NoTwoVariablesShareAWord) {
   Model model;
   const TypeId matrix = model.types.Array(model.types.Array(model.types.pos(), "2"), "3");
+  const TypeId flags = model.types.Array(model.types.boolean(), "2");
   model = Declare({{VariableKind::kLocal, matrix},
                    {VariableKind::kLocal, model.types.integer()},
-                   {VariableKind::kAllwrite, model.types.Array(model.types.boolean(), "2")},
+                   {VariableKind::kAllwrite, flags},
                    {VariableKind::kAllwrite, model.types.real()}},
                   model);
   const Layout layout(model, 2, {{"2", 2}, {"3", 3}});
@@ -137,7 +138,8 @@ TEST(Layout, EveryWordHasAKind) {
   Model model;
   const TypeId record =
       model.types.Record("Task", {"id", "done"}, {model.types.integer(), model.types.boolean()});
-  model = Declare({{VariableKind::kLocal, record}, {VariableKind::kLocal, model.types.List(record)}}, model);
+  const TypeId list = model.types.List(record);
+  model = Declare({{VariableKind::kLocal, record}, {VariableKind::kLocal, list}}, model);
   const Layout layout(model, 1, {});
   EXPECT_EQ(layout.block_kinds(),
             (std::vector<WordKind>{WordKind::kInt, WordKind::kBool, WordKind::kHandle, WordKind::kBool}));
