@@ -10,26 +10,20 @@
 #include <fstream>
 
 namespace rondo::base {
-namespace {
-
-constexpr std::uintmax_t kLargestFile = 64u << 20;
-
-}  // namespace
-
-Result<std::string> ReadFile(const std::filesystem::path& path) {
+Result<std::string> ReadFile(const std::filesystem::path& path, uint64_t largest) {
+  const auto too_large = [&] { return Error{fmt::format("is larger than {} MiB", largest >> 20)}; };
   std::error_code failure;
   const auto status = std::filesystem::status(path, failure);
   if (!std::filesystem::exists(status)) return Error{"no such file"};
   if (std::filesystem::is_directory(status)) return Error{"is a folder, not a file"};
-  if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, failure) > kLargestFile) {
-    return Error{"is larger than 64 MiB"};
-  }
+  if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, failure) > largest)
+    return too_large();
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{std::strerror(errno)};
   // Pipes have no size beforehand, and some files have no end.
   std::string text;
   for (std::array<char, 1 << 16> part; in; text.append(part.data(), static_cast<size_t>(in.gcount()))) {
-    if (text.size() > kLargestFile) return Error{"is larger than 64 MiB"};
+    if (text.size() > largest) return too_large();
     in.read(part.data(), part.size());
   }
   if (in.bad()) return Error{"could not be read to its end"};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -9,8 +10,8 @@
 /// Files are read and written as a whole: what goes wrong is a `Result`, never an exception.
 namespace rondo::base {
 
-/// Returns the bytes of a regular file. @error when it cannot be read, is a folder, or is larger than 64 MiB.
-Result<std::string> ReadFile(const std::filesystem::path& path);
+/// Returns the bytes of a file. @error when it cannot be read, is a folder, or has more than `largest` bytes.
+Result<std::string> ReadFile(const std::filesystem::path& path, uint64_t largest = uint64_t{64} << 20);
 
 /// Writes all of `text` or nothing: a temporary file beside `path` is renamed over it. Creates missing
 /// folders.

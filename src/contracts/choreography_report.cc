@@ -73,25 +73,21 @@ std::string_view Name(choreo::Way way) {
   return "";
 }
 
-template <typename Visit>
-void ForRequired(const ChoreographyProof& report, Visit visit) {
-  for (size_t i = 0; i < report.obligations.all.size(); ++i) {
-    if (choreo::IsRequired(report.obligations.all[i].kind))
-      visit(report.obligations.all[i], report.proofs.all[i]);
-  }
-}
-
 }  // namespace
 
 std::string ChoreographyTable(const ChoreographyProof& report) {
   std::map<ObligationKind, Counts> rows;
   size_t cached = 0, width = 0;
-  ForRequired(report, [&](const choreo::Obligation& o, const Proof& p) {
-    rows[o.kind].Add(p);
-    cached += p.cached ? 1 : 0;
-    width = std::max(width, Words(o.kind).size());
-  });
-  const Counts total = CountsOf(report);
+  Counts total;
+  for (size_t i = 0; i < report.obligations.all.size(); ++i) {
+    const ObligationKind kind = report.obligations.all[i].kind;
+    if (!choreo::IsRequired(kind)) continue;
+    const Proof& proof = report.proofs.all[i];
+    total.Add(proof);
+    rows[kind].Add(proof);
+    cached += proof.cached ? 1 : 0;
+    width = std::max(width, Words(kind).size());
+  }
   std::string text = fmt::format("{}: {} obligations{}\n", report.graph->source->name.text, total.All(),
                                  cached > 0 ? fmt::format(" ({} known from the cache)", cached) : "");
   for (const auto& [kind, c] : rows) {

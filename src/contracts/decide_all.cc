@@ -50,6 +50,7 @@ void DecideAll::One(size_t index, const base::StopToken& stop) {
   StoreProved(r, cache_);
   if (index + 1 < loaded_.results.size() && cover.certificate)
     reuse_.Remember(r, std::move(*cover.certificate));
+  if (options_.decided) options_.decided(index);
 }
 
 void DecideAll::Save(size_t index, const reach::certify::Certificate& certificate) {

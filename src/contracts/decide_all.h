@@ -25,6 +25,9 @@ struct DecideAllOptions {
   std::vector<std::string> ranges;     ///< quantities whose ranges are asked for, in the language of models
   std::optional<std::pair<expr::Rational, expr::Rational>> between;  ///< seconds; of the ranges
   std::function<void(const std::string&)> progress;                  ///< what is being done
+  /// Is called with the number of each contract as soon as it is done with, so that what was found is kept even if a
+  /// later one is interrupted.
+  std::function<void(size_t)> decided;
 };
 
 /// Decides contracts one after the other, has each proof certified, and keeps it for other proofs. A contract

@@ -26,10 +26,10 @@ bool IsProved(const ContractResult& r, const solve::cache::ProofCache& cache) {
   return r.impossible.empty() && cache.Find(Question(r)).has_value();
 }
 
-std::map<const choreo::Graph*, std::set<std::string>> ProvedMotions(workspace::LoadedModule& motion,
+std::map<const choreo::Graph*, std::set<std::string>> ProvedMotions(workspace::LoadedModule& module,
                                                                     const solve::cache::ProofCache& cache) {
   std::map<std::pair<const choreo::Graph*, std::string>, bool> all;
-  for (const ContractResult& r : ContractsOf(motion, false)) {  // arguments are constants: nothing to reduce
+  for (const ContractResult& r : ContractsOf(module, false)) {  // arguments are constants: nothing to reduce
     const auto [it, fresh] = all.emplace(std::pair(r.graph, r.motion), true);
     it->second = it->second && IsProved(r, cache);
   }

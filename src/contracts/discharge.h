@@ -18,7 +18,7 @@ void StoreProved(const ContractResult& result, const solve::cache::ProofCache& c
 bool IsProved(const ContractResult& result, const solve::cache::ProofCache& cache);
 
 /// Returns, for each choreography, the motions (`Type.Motion`) all of whose contracts are proved.
-std::map<const choreo::Graph*, std::set<std::string>> ProvedMotions(workspace::LoadedModule& motion,
+std::map<const choreo::Graph*, std::set<std::string>> ProvedMotions(workspace::LoadedModule& module,
                                                                     const solve::cache::ProofCache& cache);
 
 /// Moves the assumptions about ports that are proved from `assumed` to `proved`, with the robot that they are

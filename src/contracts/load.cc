@@ -12,7 +12,7 @@ namespace rondo::contracts {
 
 using diag::Kind;
 
-std::vector<ContractResult> ContractsOf(workspace::LoadedModule& motion, bool reduce, std::string_view keep,
+std::vector<ContractResult> ContractsOf(workspace::LoadedModule& module, bool reduce, std::string_view keep,
                                         std::vector<std::string>* left_out) {
   std::vector<ContractResult> all;
   const choreo::Graph* of = nullptr;
@@ -22,7 +22,7 @@ std::vector<ContractResult> ContractsOf(workspace::LoadedModule& motion, bool re
     result.span = instance.motion->name.span;
     result.graph = of;
     result.motion = fmt::format("{}.{}", body.type->name.text, instance.motion->name.text);
-    auto problem = robot::ProblemOf(world, body, instance, motion.arena);
+    auto problem = robot::ProblemOf(world, body, instance, module.arena);
     result.made.problem.name = fmt::format("{}: {}", body.name.text, instance.text);
     if (problem.ok()) {
       result.made = std::move(problem).value();
@@ -30,7 +30,7 @@ std::vector<ContractResult> ContractsOf(workspace::LoadedModule& motion, bool re
       result.impossible = problem.error().message;
     }
     if (reduce && result.impossible.empty()) {
-      if (auto reduced = robot::WithoutPlace(world, body, instance, motion.declarations->evaluator(), keep)) {
+      if (auto reduced = robot::WithoutPlace(world, body, instance, module.declarations->evaluator(), keep)) {
         result.anywhere = std::move(reduced->parameters);
         result.at_zero = std::move(reduced->anywhere);
         if (reduced->made) result.made = std::move(*reduced->made);
@@ -38,7 +38,7 @@ std::vector<ContractResult> ContractsOf(workspace::LoadedModule& motion, bool re
     }
     all.push_back(std::move(result));
   };
-  for (const choreo::Graph& graph : motion.graphs) {
+  for (const choreo::Graph& graph : module.graphs) {
     of = &graph;
     for (const choreo::Instance& i : graph.instances) {
       robot::MotionInstance instance;
@@ -53,13 +53,13 @@ std::vector<ContractResult> ContractsOf(workspace::LoadedModule& motion, bool re
       add(*graph.world, graph.BodyOf(i.robot), instance);
     }
   }
-  if (!motion.graphs.empty()) return all;
-  for (const choreo::Item& item : motion.module.items) {
+  if (!module.graphs.empty()) return all;
+  for (const choreo::Item& item : module.module.items) {
     const auto* type = std::get_if<robot::RobotDef>(&item);
     if (type == nullptr) continue;
     auto world = std::make_shared<robot::World>();
     for (const robot::MotionInstance& i :
-         robot::MotionsOf(*type, motion.declarations->evaluator(), *world, left_out))
+         robot::MotionsOf(*type, module.declarations->evaluator(), *world, left_out))
       add(*world, world->bodies[0], i);
   }
   return all;
@@ -77,18 +77,18 @@ std::vector<ContractResult> PortContractsOf(const workspace::LoadedKoord& koord,
           .Help("paths are relative to the specification");
       continue;
     }
-    auto motion = workspace::LoadModule({file}, {}, session, loose);
-    if (motion->declarations == nullptr) continue;
+    auto module = workspace::LoadModule({file}, {}, session, loose);
+    if (module->declarations == nullptr) continue;
     const robot::RobotDef* type = nullptr;
     std::vector<std::string> names;
-    for (const choreo::Item& item : motion->module.items) {
+    for (const choreo::Item& item : module->module.items) {
       const auto* def = std::get_if<robot::RobotDef>(&item);
       if (def == nullptr) continue;
       names.push_back(def->name.text);
       if (def->name.text == platform->type) type = def;
     }
     auto world = std::make_unique<robot::World>();
-    if (type == nullptr || !robot::StandAlone(*type, motion->declarations->evaluator(), *world)) {
+    if (type == nullptr || !robot::StandAlone(*type, module->declarations->evaluator(), *world)) {
       auto& report = session.diagnostics.Report(
           Kind::kChoreoUndeclared, platform->file_span,
           type == nullptr ? fmt::format("there is no robot type `{}` in `{}`", platform->type, file)
@@ -98,7 +98,7 @@ std::vector<ContractResult> PortContractsOf(const workspace::LoadedKoord& koord,
       continue;
     }
     for (koord::PortProblem& p : koord::PortProblems(koord.model, *platform, *world, world->bodies[0],
-                                                     motion->arena, session.diagnostics, loose)) {
+                                                     module->arena, session.diagnostics, loose)) {
       ContractResult result;
       result.span = p.assumption->span;
       result.made = std::move(p.made);
@@ -108,7 +108,7 @@ std::vector<ContractResult> PortContractsOf(const workspace::LoadedKoord& koord,
       result.model = platform->type;
       all.push_back(std::move(result));
     }
-    platforms.files.push_back(std::move(motion));
+    platforms.files.push_back(std::move(module));
     platforms.worlds.push_back(std::move(world));
   }
   return all;
@@ -121,10 +121,10 @@ bool LoadContracts(const std::vector<std::string>& files, const std::string& spe
     if (loaded.koord == nullptr) return false;
     loaded.results = PortContractsOf(*loaded.koord, loaded.platforms, session, loose);
   } else {
-    loaded.motion = workspace::LoadModule(files, {}, session, loose);
-    if (loaded.motion->declarations == nullptr || session.diagnostics.has_errors()) return false;
+    loaded.module = workspace::LoadModule(files, {}, session, loose);
+    if (loaded.module->declarations == nullptr || session.diagnostics.has_errors()) return false;
     loaded.results =
-        ContractsOf(*loaded.motion, reduce, loose == nullptr ? "" : loose->name, &loaded.left_out);
+        ContractsOf(*loaded.module, reduce, loose == nullptr ? "" : loose->name, &loaded.left_out);
   }
   return !session.diagnostics.has_errors();
 }

@@ -17,7 +17,7 @@ namespace rondo::contracts {
 /// @param reduce  use that places do not matter, where they do not.
 /// @param keep  a parameter that stays nevertheless.
 /// @param left_out  gets the motions of robot types that cannot be looked at alone, and why.
-std::vector<ContractResult> ContractsOf(workspace::LoadedModule& motion, bool reduce = true,
+std::vector<ContractResult> ContractsOf(workspace::LoadedModule& module, bool reduce = true,
                                         std::string_view keep = "",
                                         std::vector<std::string>* left_out = nullptr);
 
@@ -36,7 +36,7 @@ std::vector<ContractResult> PortContractsOf(const workspace::LoadedKoord& koord,
 /// Holds files with contracts, and what they are about.
 struct LoadedContracts {
   std::unique_ptr<workspace::LoadedKoord> koord;
-  std::unique_ptr<workspace::LoadedModule> motion;
+  std::unique_ptr<workspace::LoadedModule> module;
   Platforms platforms;
   std::vector<ContractResult> results;
   std::vector<std::string> left_out;  ///< motions that cannot be looked at alone, and why

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -8,6 +7,7 @@
 
 #include "contracts/contract_file.h"
 #include "contracts/decide.h"
+#include "contracts/file_contracts_test.h"
 #include "contracts/ranges.h"
 #include "contracts/report.h"
 #include "contracts/sweep.h"
@@ -32,44 +32,9 @@ const std::string kPoint = R"(robot P {
 }
 )";
 
-/// Contracts of a file in a folder of its own.
-class PointContracts : public testing::Test {
+class PointContracts : public FileContracts {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) /
-              (std::string("contracts-") + test->name() + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-    file_ = Write("p.rondo", kPoint);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string Write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
-  }
-  void Load(const robot::Loose* loose = nullptr) {
-    EXPECT_TRUE(LoadContracts({file_}, "", loose, true, session_, loaded_));
-  }
-  ContractResult& Find(const std::string& name) {
-    if (loaded_.results.empty()) Load();
-    const auto it = std::ranges::find(loaded_.results, "P: " + name,
-                                      [](const ContractResult& r) { return r.made.problem.name; });
-    EXPECT_NE(it, loaded_.results.end()) << name;
-    return *it;
-  }
-  ContractResult& Decided(const std::string& name) {
-    ContractResult& result = Find(name);
-    DecideOptions options;
-    options.jobs = 1;
-    DecideContract(result, options, base::StopToken());
-    return result;
-  }
-
-  fs::path folder_;
-  std::string file_;
-  workspace::Session session_;
-  LoadedContracts loaded_;
+  PointContracts() : FileContracts(kPoint) {}
 };
 
 TEST_F(PointContracts, AreThoseOfAllMotionsWithoutAChoreography) {
@@ -141,8 +106,7 @@ TEST_F(PointContracts, AnUnknownNameIsAnError) {
 }
 
 TEST_F(PointContracts, AMissingFileIsAnErrorAndOneReport) {
-  EXPECT_FALSE(
-      FindContract({{(folder_ / "none.rondo").string()}, "", "P: Below5()"}, session_, loaded_).ok());
+  EXPECT_FALSE(FindContract({{folder_.Path("none.rondo")}, "", "P: Below5()"}, session_, loaded_).ok());
   ASSERT_EQ(session_.diagnostics.all().size(), 1U);
   EXPECT_EQ(session_.diagnostics.all()[0].kind, diag::Kind::kFileUnreadable);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/counted.h"
 #include "diag/render.h"
 #include "verdict/verdict.h"
 
@@ -17,8 +18,6 @@ namespace {
 std::string Scope(const koord::ProveOptions& options) {
   return options.robots ? fmt::format("N = {}", *options.robots) : "every N >= 1";
 }
-
-std::string Count(size_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
 
 const char* Word(Verdict verdict) {
   switch (verdict) {
@@ -38,7 +37,8 @@ const char* Word(Verdict verdict) {
 
 std::string ProveHeader(const std::string& file, const koord::Report& report,
                         const koord::ProveOptions& options, size_t cached) {
-  std::string text = fmt::format("{}: {}, {}", file, Count(report.obligations, "obligation"), Scope(options));
+  std::string text =
+      fmt::format("{}: {}, {}", file, base::Counted(report.obligations, "obligation"), Scope(options));
   if (cached > 0) text += fmt::format(" ({} answers from the cache)", cached);
   return text + "\n";
 }
@@ -87,7 +87,7 @@ std::string ProveSummary(const koord::Report& report, const koord::ProveOptions&
   if (options.cross_check != nullptr) {
     text += fmt::format(
         "cross-checked with {}: {} agree{}{}\n", options.cross_check->name(),
-        Count(report.cross_checked, "obligation"), report.cross_checked == 1 ? "s" : "",
+        base::Counted(report.cross_checked, "obligation"), report.cross_checked == 1 ? "s" : "",
         report.cross_unknown > 0 ? fmt::format(", {} undecided there", report.cross_unknown) : "");
   }
   if (report.interrupted) text += "interrupted: what is marked `?` was not decided\n";

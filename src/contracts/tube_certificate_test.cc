@@ -1,7 +1,6 @@
 #include "contracts/tube_certificate.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include "base/file.h"
 #include "contracts/decide.h"
 #include "contracts/discharge.h"
+#include "contracts/file_contracts_test.h"
 #include "contracts/tube_reuse.h"
 
 namespace rondo::contracts {
@@ -30,52 +30,19 @@ const std::string kPoint = R"(robot P {
 }
 )";
 
-/// Contracts of a file in a folder of its own.
-class PointTubes : public testing::Test {
+class PointTubes : public FileContracts {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        fs::path(testing::TempDir()) / (std::string("tubes-") + test->name() + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-    file_ = Write("p.rondo", kPoint);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string Write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
-  }
-  void Load() { EXPECT_TRUE(LoadContracts({file_}, "", nullptr, true, session_, loaded_)); }
-  ContractResult& Find(const std::string& name) {
-    if (loaded_.results.empty()) Load();
-    const auto it = std::ranges::find(loaded_.results, "P: " + name,
-                                      [](const ContractResult& r) { return r.made.problem.name; });
-    EXPECT_NE(it, loaded_.results.end()) << name;
-    return *it;
-  }
-  ContractResult& Decided(const std::string& name) {
-    ContractResult& result = Find(name);
-    DecideOptions options;
-    options.jobs = 1;
-    DecideContract(result, options, base::StopToken());
-    return result;
-  }
+  PointTubes() : FileContracts(kPoint) {}
   static reach::certify::Certificate Proof(const ContractResult& result) {
     const auto* proved = std::get_if<reach::Proved>(&*result.outcome);
     EXPECT_NE(proved, nullptr);
     return CertificateOf(*proved);
   }
   std::string Tube(const std::string& contract, const reach::certify::Certificate& certificate) const {
-    const std::string path = (folder_ / "tube.json").string();
+    const std::string path = folder_.Path("tube.json");
     EXPECT_TRUE(SaveTube(path, {{file_}, "", contract, certificate}).ok());
     return base::ReadFile(path).value();
   }
-
-  fs::path folder_;
-  std::string file_;
-  workspace::Session session_;
-  LoadedContracts loaded_;
 };
 
 TEST_F(PointTubes, TheProofIsCertified) {
@@ -134,7 +101,7 @@ TEST_F(PointTubes, ATubeOfAModelThatHasChangedIsNotAccepted) {
   const TubeFile tube{{file_}, "", "P: Below4()", Proof(Decided("Below4()"))};
   std::string text = kPoint;
   text.replace(text.find("gain = 1"), 8, "gain = 2");
-  Write("p.rondo", text);
+  folder_.Write("p.rondo", text);
   workspace::Session fresh;
   const auto checked = CheckTube(tube, fresh, base::StopToken());
   EXPECT_TRUE(!checked.ok() || !checked.value().accepted);
@@ -170,7 +137,7 @@ TEST_F(PointTubes, WhatIsNotProvedIsNotRemembered) {
 }
 
 TEST_F(PointTubes, OnlyProvedOnesAreKept) {
-  const solve::cache::ProofCache cache(folder_ / "cache");
+  const solve::cache::ProofCache cache(folder_.path() / "cache");
   StoreProved(Find("Below5()"), cache);
   StoreProved(Decided("Below2()"), cache);
   StoreProved(Decided("Below4()"), cache);
@@ -180,11 +147,11 @@ TEST_F(PointTubes, OnlyProvedOnesAreKept) {
 }
 
 TEST_F(PointTubes, AProofIsNotOneOfAModelThatHasChanged) {
-  const solve::cache::ProofCache cache(folder_ / "cache");
+  const solve::cache::ProofCache cache(folder_.path() / "cache");
   StoreProved(Decided("Below4()"), cache);
   std::string text = kPoint;
   text.replace(text.find("gain = 1"), 8, "gain = 2");
-  Write("p.rondo", text);
+  folder_.Write("p.rondo", text);
   loaded_.results.clear();
   Load();
   EXPECT_FALSE(IsProved(Find("Below4()"), cache));

@@ -45,15 +45,29 @@ std::string_view Name(Svg::Anchor anchor) {
   return "";
 }
 
+// What differs from the way in which everything is painted unless it says otherwise.
+std::string Paint(const Svg::Style& style) {
+  std::string paint = fmt::format(R"( fill="{}" stroke="{}")", style.fill, style.stroke);
+  if (style.width != 1) paint += fmt::format(R"( stroke-width="{:g}")", style.width);
+  if (style.opacity != 1) paint += fmt::format(R"( fill-opacity="{:g}")", style.opacity);
+  if (style.radius > 0) paint += fmt::format(R"( rx="{:.1f}")", style.radius);
+  if (style.dashed) paint += R"( stroke-dasharray="4 3")";
+  return paint;
+}
+
 }  // namespace
 
 double Svg::WidthOf(std::string_view text) { return kCharacter * static_cast<double>(text.size()); }
 
 void Svg::Rect(double x, double y, double width, double height, const Style& style) {
-  body_ += fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="{}" stroke="{}")",
-                       x, y, width, height, style.fill, style.stroke);
-  if (style.radius > 0) body_ += fmt::format(R"( rx="{:.1f}")", style.radius);
-  body_ += style.dashed ? " stroke-dasharray=\"4 3\"/>\n" : "/>\n";
+  body_ += fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}"{}/>)", x, y, width,
+                       height, Paint(style));
+  body_ += '\n';
+}
+
+void Svg::Circle(double x, double y, double radius, const Style& style) {
+  body_ += fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="{:.1f}"{}/>)", x, y, radius, Paint(style));
+  body_ += '\n';
 }
 
 void Svg::Polygon(const std::vector<std::array<double, 2>>& points, const Style& style) {
@@ -103,7 +117,8 @@ void Svg::Bow(double x1, double y1, double x2, double y2, double out, std::strin
   Arrow(x2 + kHead + 1, y2, x2, y2, stroke);
 }
 
-void Svg::Text(double x, double y, std::string_view text, Anchor anchor, double width, bool bold) {
+void Svg::Text(double x, double y, std::string_view text, Anchor anchor, double width, bool bold,
+               std::string_view colour) {
   std::string shown(text);
   const auto fits = static_cast<size_t>(width / kCharacter);
   if (shown.size() > fits && fits > 1) {
@@ -111,8 +126,10 @@ void Svg::Text(double x, double y, std::string_view text, Anchor anchor, double 
     while (cut > 0 && (static_cast<unsigned char>(shown[cut]) & 0xC0u) == 0x80u) --cut;
     shown = shown.substr(0, cut) + "\u2026";
   }
-  body_ += fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}"{}>)", x, y, Name(anchor),
-                       bold ? R"( font-weight="bold")" : "");
+  body_ += fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}")", x, y, Name(anchor));
+  if (bold) body_ += R"( font-weight="bold")";
+  if (colour != "black") body_ += fmt::format(R"( fill="{}")", colour);
+  body_ += '>';
   if (shown != text) body_ += "<title>" + Escape(text) + "</title>";
   body_ += Escape(shown) + "</text>\n";
 }

@@ -20,11 +20,14 @@ class Svg {
     std::string_view stroke = "none";
     bool dashed = false;  ///< of outlines of rectangles
     double radius = 0;    ///< of the corners of rectangles, in pixels
+    double width = 1;     ///< of the outlines of rectangles and circles, in pixels
+    double opacity = 1;   ///< of what rectangles and circles are filled with
   };
   /// Says which part of a text stands at its place.
   enum class Anchor : uint8_t { kStart, kMiddle, kEnd };
 
   void Rect(double x, double y, double width, double height, const Style& style);
+  void Circle(double x, double y, double radius, const Style& style);
   /// Draws a closed area, filled at 35 % opacity so that what is below shows through.
   void Polygon(const std::vector<std::array<double, 2>>& points, const Style& style);
   void Line(double x1, double y1, double x2, double y2, std::string_view stroke, bool dashed = false);
@@ -39,7 +42,8 @@ class Svg {
   void Bow(double x1, double y1, double x2, double y2, double out, std::string_view stroke);
   /// Writes a text at most `width` pixels wide: what does not fit is cut, and shown as a whole when pointed
   /// at.
-  void Text(double x, double y, std::string_view text, Anchor anchor, double width, bool bold = false);
+  void Text(double x, double y, std::string_view text, Anchor anchor, double width, bool bold = false,
+            std::string_view colour = "black");
 
   /// Returns the whole picture, `width` x `height` pixels, on white.
   std::string Finish(double width, double height, std::string_view title) const;

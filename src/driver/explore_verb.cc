@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/counted.h"
 #include "base/file.h"
 #include "driver/command.h"
 #include "driver/terminal.h"
@@ -57,8 +58,6 @@ const char* Word(const runs::Explored& e, const Options& options) {
   return "";
 }
 
-std::string Count(uint64_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
-
 // Events and branches that no size reached, if all were explored completely.
 void Coverage(const koord::Model& model, const std::vector<runs::Explored>& all,
               diag::Diagnostics& diagnostics) {
@@ -88,10 +87,12 @@ std::string Table(const std::vector<runs::Explored>& all, const Options& options
     const double rate = e.search.seconds > 0 ? static_cast<double>(e.search.states) / e.search.seconds : 0;
     const std::string size =
         options.walks > 0
-            ? fmt::format("{}, {}", Count(e.walked, "walk"), Count(e.search.transitions, "step"))
+            ? fmt::format("{}, {}", base::Counted(e.walked, "walk"),
+                          base::Counted(e.search.transitions, "step"))
             : fmt::format("{}, {}, {}",
-                          Count(e.search.states, e.symmetric ? "state up to renaming" : "state"),
-                          Count(e.search.transitions, "transition"), Count(e.rounds, "round"));
+                          base::Counted(e.search.states, e.symmetric ? "state up to renaming" : "state"),
+                          base::Counted(e.search.transitions, "transition"),
+                          base::Counted(e.rounds, "round"));
     std::string fixed = size;
     if (const size_t at = fixed.find("state up to renamings"); at != std::string::npos)
       fixed.replace(at, 21, "states up to renaming");
@@ -207,10 +208,11 @@ ExitStatus Run(const Options& options) {
     const size_t invariants = loaded->model.invariants.size();
     const std::string what = options.walks > 0 ? "simulated at random"
                              : options.depth > 0
-                                 ? fmt::format("explored up to {}", Count(options.depth, "round"))
+                                 ? fmt::format("explored up to {}", base::Counted(options.depth, "round"))
                                  : "explored";
     text += fmt::format("\n{}: {} hold{} for N = {}, no operation fails.\n", what,
-                        Count(invariants, "invariant"), invariants == 1 ? "s" : "", fmt::join(done, ", "));
+                        base::Counted(invariants, "invariant"), invariants == 1 ? "s" : "",
+                        fmt::join(done, ", "));
   }
   if (!all.empty() && !all[0].zeroed.empty())
     text += fmt::format("zero, false or empty at the start: {}\n", fmt::join(all[0].zeroed, ", "));

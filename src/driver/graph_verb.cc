@@ -106,10 +106,10 @@ std::string ToText(const Graph& graph, const lang::ExprPool& pool) {
 
 ExitStatus Run(const Options& options) {
   workspace::Session session;
-  const auto motion = workspace::LoadModule(options.files, {}, session);
+  const auto module = workspace::LoadModule(options.files, {}, session);
   std::vector<const Graph*> graphs;
   std::vector<std::string> names;
-  for (const Graph& graph : motion->graphs) {
+  for (const Graph& graph : module->graphs) {
     names.push_back(graph.source->name.text);
     if (options.choreography.empty() || options.choreography == names.back()) graphs.push_back(&graph);
   }
@@ -124,19 +124,19 @@ ExitStatus Run(const Options& options) {
   }
   if (good && !options.svg.empty()) {
     if (graphs.size() == 1)
-      return WritePicture(options.svg, choreo::DrawChart(*graphs[0], motion->module.exprs));
+      return WritePicture(options.svg, choreo::DrawChart(*graphs[0], module->module.exprs));
     PrintFailure("a picture shows one choreography: choose one by --choreography");
     return ExitStatus::kUsage;
   }
   if (options.json) {
     nlohmann::json list = nlohmann::json::array();
-    for (const Graph* graph : graphs) list.push_back(ToJson(*graph, motion->module.exprs));
+    for (const Graph* graph : graphs) list.push_back(ToJson(*graph, module->module.exprs));
     PrintJson({{"command", "graph"},
                {"ok", good},
                {"graphs", good ? list : nlohmann::json::array()},
                {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}});
   } else {
-    for (const Graph* graph : graphs) Print(ToText(*graph, motion->module.exprs));
+    for (const Graph* graph : graphs) Print(ToText(*graph, module->module.exprs));
     PrintDiagnostics(session.sources, session.diagnostics);
   }
   return good ? ExitStatus::kEstablished : ExitStatus::kRejected;

@@ -37,22 +37,24 @@ ExitStatus Finish(const Options& options, const workspace::Session& session, con
 ExitStatus Run(const Options& options) {
   workspace::Session session;
   nlohmann::json list = nlohmann::json::array();
-  const auto motion = workspace::LoadModule(options.files, options.admitted, session);
-  const auto conditions = workspace::CheckStructure(*motion, session);
+  const auto module = workspace::LoadModule(options.files, options.admitted, session);
+  const auto conditions = workspace::CheckStructure(*module, session);
   if (!conditions || session.diagnostics.has_errors())
     return Finish(options, session, list, ExitStatus::kRejected);
-  ProgressLine line;
-  contracts::ChoreographyOptions search;
-  const InterruptScope interrupt(search.stop);
-  search.timeout = options.timeout;
-  search.progress = [&](const std::string& what) { line.Show(what); };
   std::string text;
-  for (choreo::Graph& graph : motion->graphs) {
-    const choreo::Inference regions = contracts::FindRegions(graph, motion->arena, search);
-    text += contracts::RegionLines(regions, session.sources);
-    for (const choreo::FoundRegion& r : regions.found)
-      list.push_back({{"robots", r.robots}, {"region", r.text}});
-    contracts::ReportRegions(regions, session.diagnostics);
+  {
+    ProgressLine line;
+    contracts::ChoreographyOptions search;
+    const InterruptScope interrupt(search.stop);
+    search.timeout = options.timeout;
+    search.progress = [&](const std::string& what) { line.Show(what); };
+    for (choreo::Graph& graph : module->graphs) {
+      const choreo::Inference regions = contracts::FindRegions(graph, module->arena, search);
+      text += contracts::RegionLines(regions, session.sources);
+      for (const choreo::FoundRegion& r : regions.found)
+        list.push_back({{"robots", r.robots}, {"region", r.text}});
+      contracts::ReportRegions(regions, session.diagnostics);
+    }
   }
   if (!options.json)
     Print(text.empty() && !session.diagnostics.has_errors() ? "every thread has a region\n" : text);

@@ -51,22 +51,22 @@ nlohmann::json ToJson(const choreo::Graph& graph, const lang::ExprPool& pool, co
 
 ExitStatus Run(const Options& options) {
   workspace::Session session;
-  const auto motion = workspace::LoadModule({options.file}, {}, session);
+  const auto module = workspace::LoadModule({options.file}, {}, session);
   nlohmann::json list = nlohmann::json::array();
   std::string text, picture;
   std::vector<std::string> robots;
-  for (const choreo::Graph& graph : motion->graphs) {
+  for (const choreo::Graph& graph : module->graphs) {
     choreo::CheckWellFormed(graph, session.diagnostics);
     for (size_t r = 0; r < graph.robots.size(); ++r) {
       robots.push_back(graph.robots[r].text);
       if (!options.robot.empty() && options.robot != robots.back()) continue;
       const size_t errors = session.diagnostics.errors();
-      const auto type = choreo::Project(graph, motion->module.exprs, choreo::RobotId(r), session.diagnostics);
+      const auto type = choreo::Project(graph, module->module.exprs, choreo::RobotId(r), session.diagnostics);
       if (session.diagnostics.errors() > errors) continue;
-      list.push_back(ToJson(graph, motion->module.exprs, type));
-      picture = choreo::DrawAutomaton(graph, motion->module.exprs, type);
+      list.push_back(ToJson(graph, module->module.exprs, type));
+      picture = choreo::DrawAutomaton(graph, module->module.exprs, type);
       text += fmt::format("{} in {}\n{}", robots.back(), graph.source->name.text,
-                          choreo::ToText(graph, motion->module.exprs, type));
+                          choreo::ToText(graph, module->module.exprs, type));
     }
   }
   const bool good = !session.diagnostics.has_errors();

@@ -56,8 +56,9 @@ class Run {
                                      const std::vector<choreo::SideCondition>& conditions,
                                      std::set<std::string> discharged, expr::Arena& arena) {
     ProgressLine line;
+    const InterruptScope interrupt(stop_);
     contracts::ChoreographyOptions prove;
-    const InterruptScope interrupt(prove.stop);
+    prove.stop = stop_;
     prove.timeout = options_.timeout;
     prove.jobs = options_.jobs;
     prove.certify = options_.certify;
@@ -95,6 +96,7 @@ class Run {
   const ProveChoreographiesOptions& options_;
   const solve::cache::ProofCache cache_;
   workspace::Session session_;
+  base::StopToken stop_;  // of all choreographies
   std::vector<contracts::ChoreographyProof> proofs_;
   std::string picture_;
 };

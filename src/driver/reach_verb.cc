@@ -74,7 +74,8 @@ class Run {
         options_.certificates,
         options_.ranges,
         between_,
-        {}};
+        {},
+        [this](size_t i) { Keep(i); }};
     {
       ProgressLine line;
       const InterruptScope interrupt(stop_);
@@ -82,7 +83,6 @@ class Run {
       decided_.emplace(loaded_, deciding, cache_);
       decided_->Run(stop_);
       for (const std::string& failure : decided_->failures()) PrintFailure(failure);
-      for (size_t i = 0; i < loaded_.results.size(); ++i) Keep(i);
     }
     ExitStatus status = ExitStatus::kEstablished;
     for (const contracts::ContractResult& r : loaded_.results) {

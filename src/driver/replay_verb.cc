@@ -33,7 +33,7 @@ ExitStatus Tell(const Options& options, const runs::Replayed& replayed, const wo
     return status;
   }
   if (session.diagnostics.has_errors()) PrintDiagnostics(session.sources, session.diagnostics);
-  Print(fmt::format("{}: {}\n", options.file, replayed.text));
+  if (!replayed.text.empty()) Print(fmt::format("{}: {}\n", options.file, replayed.text));
   return status;
 }
 
@@ -43,7 +43,7 @@ ExitStatus Run(const Options& options) {
   if (!bytes.ok()) {
     session.diagnostics.Report(diag::Kind::kFileUnreadable, {},
                                fmt::format("cannot read `{}`: {}", options.file, bytes.error().message));
-    return Tell(options, {false, "it cannot be read"}, session);
+    return Tell(options, {}, session);
   }
   runs::Replayed replayed;
   {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "base/counted.h"
 #include "driver/command.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
@@ -30,17 +31,15 @@ struct Options {
   bool json = false;
 };
 
-std::string Count(uint64_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
-
 nlohmann::json Finite(double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(nullptr); }
 
 std::string Summary(const sim::SimulationReport& report, double seconds) {
   const bool real = seconds > 0.005;
-  std::string text = fmt::format("  {:.6g} s in {}, {}{}\n", report.time, Count(report.rounds, "round"),
-                                 Count(report.events, "event"),
+  std::string text = fmt::format("  {:.6g} s in {}, {}{}\n", report.time,
+                                 base::Counted(report.rounds, "round"), base::Counted(report.events, "event"),
                                  real ? fmt::format("; {:.1f} x real time", report.time / seconds) : "");
   if (report.collisions > 0) {
-    text += fmt::format("  {}; the first at {:.6g} s: {}\n", Count(report.collisions, "collision"),
+    text += fmt::format("  {}; the first at {:.6g} s: {}\n", base::Counted(report.collisions, "collision"),
                         report.first_collision, report.first_pair);
   } else {
     text += fmt::format("  no collision, looked at every {:.3g} s\n", report.observed_every);
@@ -50,8 +49,9 @@ std::string Summary(const sim::SimulationReport& report, double seconds) {
   if (std::isfinite(report.least_to_obstacles))
     text += fmt::format("  obstacles never closer than {:.3f} m\n", report.least_to_obstacles);
   if (report.known_cells > 0) {
-    text += fmt::format("  map: {} known, {} wrongly occupied, {} reachable but unknown\n",
-                        Count(report.known_cells, "cell"), report.wrong_cells, report.reachable_unknown);
+    text +=
+        fmt::format("  map: {} known, {} wrongly occupied, {} reachable but unknown\n",
+                    base::Counted(report.known_cells, "cell"), report.wrong_cells, report.reachable_unknown);
   }
   switch (report.ended) {
     case sim::Ending::kStopped:
@@ -175,7 +175,7 @@ ExitStatus Run(const Options& options) {
     PrintJson(out);
     return status;
   }
-  Print(fmt::format("{}: {}, seed {}\n{}", files.program, Count(fleet.robots.size(), "robot"),
+  Print(fmt::format("{}: {}, seed {}\n{}", files.program, base::Counted(fleet.robots.size(), "robot"),
                     simulation.seed, Summary(report, seconds)));
   if (written && writer) Print(fmt::format("trace: {}\n", options.trace));
   PrintDiagnostics(session.sources, session.diagnostics);

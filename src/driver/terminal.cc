@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "base/counted.h"
 #include "base/file.h"
 
 namespace rondo::driver {
@@ -53,15 +54,12 @@ void PrintDiagnostics(const diag::SourceSet& sources, const diag::Diagnostics& d
     if (d.severity == diag::Severity::kError) ++errors;
     if (d.severity == diag::Severity::kWarning) ++warnings;
   }
-  const auto count = [](size_t n, const char* what) {
-    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
-  };
   if (errors > 0 && warnings > 0)
-    text += fmt::format("{}, {}\n", count(errors, "error"), count(warnings, "warning"));
+    text += fmt::format("{}, {}\n", base::Counted(errors, "error"), base::Counted(warnings, "warning"));
   else if (errors > 0)
-    text += count(errors, "error") + "\n";
+    text += base::Counted(errors, "error") + "\n";
   else if (warnings > 0)
-    text += count(warnings, "warning") + "\n";
+    text += base::Counted(warnings, "warning") + "\n";
   PrintError(text);
 }
 

@@ -1,7 +1,6 @@
 #include "runs/execution_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -9,6 +8,7 @@
 
 #include "base/file.h"
 #include "contracts/contract_file.h"
+#include "fixtures/temporary_folder.h"
 #include "runs/replay.h"
 
 namespace rondo::runs {
@@ -28,11 +28,7 @@ std::string Point(const std::string& limit) {
 class ExecutionFiles : public testing::Test {
  protected:
   void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) /
-              (std::string("executions-") + test->name() + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-    std::ofstream(folder_ / "p.rondo") << Point("2");
+    folder_.Write("p.rondo", Point("2"));
     // The start has one value for each state of the problem: x and, where there is one, the clock.
     workspace::Session session;
     contracts::LoadedContracts loaded;
@@ -43,11 +39,9 @@ class ExecutionFiles : public testing::Test {
     for (const interval::Interval& side : problem.initial) file_.execution.start.push_back(side.hi);
     file_.execution.inputs = {std::vector<double>(problem.inputs.size(), 1.0)};
   }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string Program() const { return (folder_ / "p.rondo").string(); }
+  std::string Program() const { return folder_.Path("p.rondo"); }
   std::string Saved(const ExecutionFile& file) const {
-    const std::string path = (folder_ / "run.json").string();
+    const std::string path = folder_.Path("run.json");
     EXPECT_TRUE(SaveExecution(path, file).ok());
     return base::ReadFile(path).value();
   }
@@ -56,7 +50,7 @@ class ExecutionFiles : public testing::Test {
     return ReplayExecution(file, session).ok();
   }
 
-  fs::path folder_;
+  fixtures::TemporaryFolder folder_;
   ExecutionFile file_;
 };
 
@@ -152,12 +146,12 @@ TEST_F(ExecutionFiles, AnotherClaimOrContractDoesNotReplay) {
 }
 
 TEST_F(ExecutionFiles, AMendedContractDoesNotReplay) {
-  std::ofstream(folder_ / "p.rondo") << Point("3.5");
+  folder_.Write("p.rondo", Point("3.5"));
   EXPECT_FALSE(Replays(file_));
 }
 
 TEST_F(ExecutionFiles, AFileThatIsGoneDoesNotReplay) {
-  fs::remove(folder_ / "p.rondo");
+  fs::remove(folder_.path() / "p.rondo");
   workspace::Session session;
   EXPECT_FALSE(ReplayExecution(file_, session).ok());
   ASSERT_EQ(session.diagnostics.all().size(), 1U);

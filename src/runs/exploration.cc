@@ -6,6 +6,7 @@
 #include <cfenv>
 #include <random>
 
+#include "base/counted.h"
 #include "koord/check/spec_labels.h"
 #include "koord/semantics/story.h"
 #include "koord/semantics/system.h"
@@ -24,8 +25,6 @@ size_t RoundsOf(const std::vector<koord::semantics::Step>& run) {
                                            [](const auto& step) { return !step.environment; }));
 }
 
-std::string Rounds(size_t n) { return n == 1 ? "1 round" : fmt::format("{} rounds", n); }
-
 void ReportBroken(Team& team, System& system, const std::vector<std::vector<koord::semantics::Word>>& path,
                   const explore::Broken& broken, Explored& explored, diag::Diagnostics& diagnostics) {
   const koord::Model& model = team.model();
@@ -40,8 +39,9 @@ void ReportBroken(Team& team, System& system, const std::vector<std::vector<koor
     case Trouble::kInvariant: {
       const auto& invariant = team.invariants()[static_cast<size_t>(broken.property)];
       explored.property = "invariant " + invariant.name;
-      const std::string when = rounds == 0 ? "an initial state violates"
-                                           : fmt::format("after {}, the team violates", Rounds(rounds));
+      const std::string when =
+          rounds == 0 ? "an initial state violates"
+                      : fmt::format("after {}, the team violates", base::Counted(rounds, "round"));
       auto& report = diagnostics.Report(Kind::kKoordViolated, invariant.span,
                                         fmt::format("{} `{}`", when, invariant.name));
       if (!run.empty()) {
@@ -53,7 +53,7 @@ void ReportBroken(Team& team, System& system, const std::vector<std::vector<koor
       }
       if (explored.rounded)
         report.Note("doubles are rounded in this run: with exact numbers it may not exist");
-      report.Note(fmt::format("with {} robot{}:\n{}", team.robots(), team.robots() == 1 ? "" : "s", table));
+      report.Note(fmt::format("with {}:\n{}", base::Counted(team.robots(), "robot"), table));
       break;
     }
     case Trouble::kFault: {
@@ -70,12 +70,12 @@ void ReportBroken(Team& team, System& system, const std::vector<std::vector<koor
       auto& report =
           diagnostics.Report(Kind::kKoordFault, detail.span,
                              start ? fmt::format("an initial value has no result: {}", Describe(detail.fault))
-                                   : fmt::format("robot {} fails after {}: {}", detail.robot, Rounds(rounds),
-                                                 Describe(detail.fault)));
+                                   : fmt::format("robot {} fails after {}: {}", detail.robot,
+                                                 base::Counted(rounds, "round"), Describe(detail.fault)));
       if (!start) {
         report.Under(
             fmt::format("in event `{}`", team.events()[static_cast<size_t>(detail.event)].def->name));
-        report.Note(fmt::format("with {} robot{}:\n{}", team.robots(), team.robots() == 1 ? "" : "s", table));
+        report.Note(fmt::format("with {}:\n{}", base::Counted(team.robots(), "robot"), table));
       }
       break;
     }
@@ -181,8 +181,8 @@ void ReportDeadlock(Team& team, System& system, Explored& explored, diag::Diagno
   explored.run = koord::semantics::RunToJson(team, run);
   diagnostics
       .Report(Kind::kKoordDeadlock, team.model().events[0]->span,
-              fmt::format("after {}, no robot can do anything", Rounds(RoundsOf(run))))
-      .Note(fmt::format("with {} robot{}:\n{}", team.robots(), team.robots() == 1 ? "" : "s",
+              fmt::format("after {}, no robot can do anything", base::Counted(RoundsOf(run), "round")))
+      .Note(fmt::format("with {}:\n{}", base::Counted(team.robots(), "robot"),
                         koord::semantics::Tell(team, run)))
       .Help("a robot that has finished should `stop`");
 }
@@ -191,8 +191,8 @@ void ReportNoInitialState(const Team& team, Explored& explored, diag::Diagnostic
   diagnostics
       .Report(Kind::kKoordNoInitialState,
               team.initially().empty() ? team.model().events[0]->span : team.initially()[0].span,
-              fmt::format("no declared state of {} robot{} satisfies the assumptions about the initial state",
-                          team.robots(), team.robots() == 1 ? "" : "s"))
+              fmt::format("no declared state of {} satisfies the assumptions about the initial state",
+                          base::Counted(team.robots(), "robot")))
       .Note(explored.zeroed.empty()
                 ? std::string("every declared state is refused")
                 : fmt::format("zero, false or empty at the start: {}", fmt::join(explored.zeroed, ", ")))

@@ -23,8 +23,9 @@ Replayed ReplaySteps(const RunFile& run, const koord::Model& model) {
   diag::Diagnostics problems;
   koord::semantics::TeamOptions team_options;
   team_options.robots = run.robots;
-  AdoptParameters(run, model, team_options);
-  const auto team = koord::semantics::Team::Make(model, team_options, problems);
+  koord::semantics::Heap heap;
+  AdoptParameters(run, model, team_options, heap);
+  const auto team = koord::semantics::Team::Make(model, team_options, problems, std::move(heap));
   if (!team) {
     return {false,
             fmt::format("the program cannot be executed: {}",

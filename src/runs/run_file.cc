@@ -33,8 +33,8 @@ void KeepParameters(RunFile& run, const koord::Model& model, const koord::semant
     run.choices[model.variables[v].name] = ValuesToJson(model, v, words);
 }
 
-void AdoptParameters(const RunFile& run, const koord::Model& model, koord::semantics::TeamOptions& options) {
-  koord::semantics::Heap heap;
+void AdoptParameters(const RunFile& run, const koord::Model& model, koord::semantics::TeamOptions& options,
+                     koord::semantics::Heap& heap) {
   const auto adopt = [&](const nlohmann::json& given,
                          std::map<size_t, std::vector<koord::semantics::Word>>& to) {
     for (size_t v = 0; v < model.variables.size(); ++v) {

@@ -22,8 +22,10 @@ struct RunFile {
   nlohmann::json choices = nlohmann::json::object();
 };
 
-/// Puts `params` and `choices` of the file into the options of the team that runs it.
-void AdoptParameters(const RunFile& run, const koord::Model& model, koord::semantics::TeamOptions& options);
+/// Puts `params` and `choices` of the file into the options of the team that runs it, and their lists and texts into its
+/// heap.
+void AdoptParameters(const RunFile& run, const koord::Model& model, koord::semantics::TeamOptions& options,
+                     koord::semantics::Heap& heap);
 /// Puts what the options say into the file, the reverse of `AdoptParameters`.
 void KeepParameters(RunFile& run, const koord::Model& model, const koord::semantics::TeamOptions& options);
 

@@ -1,12 +1,12 @@
 #include "runs/run_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
 
 #include "base/file.h"
+#include "fixtures/temporary_folder.h"
 #include "runs/exploration.h"
 #include "runs/replay.h"
 #include "runs/witness_search.h"
@@ -28,21 +28,15 @@ std::string Bounded(int most) {
 class RunFiles : public testing::Test {
  protected:
   void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        fs::path(testing::TempDir()) / (std::string("runs-") + test->name() + std::to_string(::getpid()));
-    fs::create_directories(folder_);
     const char* cache = std::getenv("XDG_CACHE_HOME");
     if (cache != nullptr) cache_ = cache;
-    ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
+    ::setenv("XDG_CACHE_HOME", (folder_.path() / "cache").c_str(), 1);
   }
   void TearDown() override {
-    fs::remove_all(folder_);
     cache_ ? ::setenv("XDG_CACHE_HOME", cache_->c_str(), 1) : ::unsetenv("XDG_CACHE_HOME");
   }
   std::string Write(const std::string& name, const std::string& text) const {
-    EXPECT_TRUE(base::WriteFileAtomically(folder_ / name, text).ok());
-    return (folder_ / name).string();
+    return folder_.Write(name, text);
   }
   // A run of two robots that breaks the bound, as its file.
   RunFile Broken() const {
@@ -53,7 +47,7 @@ class RunFiles : public testing::Test {
     return {Write("p.koord", Bounded(1)), "", 2, found.property, "explore", found.run};
   }
   std::string Saved(const RunFile& run) const {
-    const std::string path = (folder_ / "run.json").string();
+    const std::string path = folder_.Path("run.json");
     EXPECT_TRUE(SaveRun(path, run).ok());
     return base::ReadFile(path).value();
   }
@@ -62,7 +56,7 @@ class RunFiles : public testing::Test {
     return Replay(bytes, session, {});
   }
 
-  fs::path folder_;
+  fixtures::TemporaryFolder folder_;
   std::optional<std::string> cache_;
 };
 
@@ -141,7 +135,7 @@ TEST_F(RunFiles, ARunDoesNotReplayOnceTheProgramIsMended) {
   const std::string text = Saved(Broken());
   Write("p.koord", Bounded(2));
   EXPECT_FALSE(Again(text).same);
-  fs::remove(folder_ / "p.koord");
+  fs::remove(folder_.path() / "p.koord");
   EXPECT_FALSE(Again(text).same);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/counted.h"
 #include "koord/prove/witness_replay.h"
 #include "runs/run_file.h"
 #include "verdict/verdict.h"
@@ -76,8 +77,8 @@ class Search {
     }
     Reached reached{row.name, {}, {}, false};
     if (searched == 0) {
-      reached.text = fmt::format("{}: {} rounds of {} robot{} are too many runs to look at", row.name,
-                                 *options.rounds, first, first == 1 ? "" : "s");
+      reached.text = fmt::format("{}: {} rounds of {} are too many runs to look at", row.name,
+                                 *options.rounds, base::Counted(first, "robot"));
     } else {
       const std::string scope =
           first == searched ? fmt::format("N = {}", searched) : fmt::format("N <= {}", searched);

@@ -34,6 +34,7 @@ int Run::Find(const std::string& name) const {
 
 bool Run::MakeTeam() {
   koord::semantics::TeamOptions options;
+  Heap heap;  // of the parameters
   options.robots = fleet_.robots.size();
   options.hosted = [&](size_t f) { return functions_.Knows(f); };
   const size_t before = diagnostics_.errors();
@@ -45,18 +46,15 @@ bool Run::MakeTeam() {
       continue;
     }
     const lang::TypeId type = model_.variables[static_cast<size_t>(v)].type;
-    koord::semantics::Heap scratch;
-    if (koord::semantics::FromJson(model_.types, scratch, type, given.value)) {
-      options.made_params[static_cast<size_t>(v)] = [this, type, value = &given.value](Heap& heap) {
-        return *koord::semantics::FromJson(model_.types, heap, type, *value);
-      };
+    const auto words = koord::semantics::FromJson(model_.types, heap, type, given.value);
+    if (words) {
+      options.params[static_cast<size_t>(v)] = *words;
     } else {
       diagnostics_.Report(Kind::kFleetValue, given.span,
-                          fmt::format("`{}` must be a `{}`", name,
-                                      model_.types.Name(model_.variables[static_cast<size_t>(v)].type)));
+                          fmt::format("`{}` must be a `{}`", name, model_.types.Name(type)));
     }
   }
-  team_ = Team::Make(model_, options, diagnostics_);
+  team_ = Team::Make(model_, options, diagnostics_, std::move(heap));
   if (team_ == nullptr || diagnostics_.errors() != before) return false;
   for (const auto& part : team_->unchecked()) {
     report_.unchecked.push_back(part.name);

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <random>
 
+#include "fixtures/temporary_folder.h"
 #include "trace/bytes.h"
 #include "trace/reader.h"
 #include "trace/ros.h"
@@ -22,16 +22,9 @@ constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 /// A folder of its own for each test.
 class TraceFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        fs::path(testing::TempDir()) / (std::string("trace-") + test->name() + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string Path(const std::string& name) const { return folder_.Path(name); }
 
-  fs::path folder_;
+  fixtures::TemporaryFolder folder_;
 };
 
 std::string Record(uint8_t op, std::string_view content) {
@@ -164,7 +157,9 @@ TEST(TraceReading, AVisitorEndsTheReading) {
 
 TEST_F(TraceFiles, AMissingTraceIsAnError) { EXPECT_FALSE(ReadTrace(Path("none.mcap")).ok()); }
 
-TEST_F(TraceFiles, AFolderCannotBeWrittenAsATrace) { EXPECT_FALSE(Writer::Open(folder_.string()).ok()); }
+TEST_F(TraceFiles, AFolderCannotBeWrittenAsATrace) {
+  EXPECT_FALSE(Writer::Open(folder_.path().string()).ok());
+}
 
 TEST_F(TraceFiles, FoldersAreMadeWhereAreNone) {
   Writer writer = Writer::Open(Path("a/b/c.mcap")).value();

@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
 #include <map>
 
+#include "base/file.h"
 #include "trace/bytes.h"
 
 namespace rondo::trace {
@@ -124,17 +121,7 @@ base::Result<bool> ForEachMessage(std::string_view file, const std::function<boo
 }
 
 base::Result<std::string> ReadTrace(const std::string& path) {
-  std::error_code problem;
-  const uint64_t size = std::filesystem::file_size(path, problem);
-  if (problem) return base::Error{problem.message()};
-  if (size > (uint64_t{4} << 30)) return base::Error{"the file is larger than 4 GiB"};
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-  if (file == nullptr) return base::Error{std::strerror(errno)};
-  std::string bytes(size, '\0');
-  const size_t got = std::fread(bytes.data(), 1, bytes.size(), file);
-  std::fclose(file);
-  if (got != size) return base::Error{"the file could not be read to its end"};
-  return bytes;
+  return base::ReadFile(path, uint64_t{4} << 30);
 }
 
 }  // namespace rondo::trace

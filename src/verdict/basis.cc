@@ -6,10 +6,6 @@ namespace rondo::verdict {
 
 std::string_view Name(Engine engine) {
   switch (engine) {
-    case Engine::kInduction:
-      return "induction";
-    case Engine::kObligations:
-      return "obligations";
     case Engine::kReachability:
       return "reachability";
   }

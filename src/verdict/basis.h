@@ -11,11 +11,9 @@ namespace rondo::verdict {
 
 /// Names what decided a claim.
 enum class Engine : uint8_t {
-  kInduction,     ///< invariants of Koord programs, by an SMT solver
-  kObligations,   ///< choreographies, by separation and interval arithmetic
   kReachability,  ///< contracts of motions and ports, by tubes
 };
-/// Returns the word that people and JSON see: `induction`, `obligations`, `reachability`.
+/// Returns the word that people and JSON see: `reachability`.
 std::string_view Name(Engine engine);
 
 /// Is an assumption that another engine has proved.

@@ -26,7 +26,6 @@ constexpr Verdict Worse(Verdict a, Verdict b) { return a < b ? b : a; }
 
 /// Says why a search ended without an answer.
 enum class Shortfall : uint8_t {
-  kNone,         ///< it has an answer
   kMethod,       ///< its method decides no more, however long it takes
   kTime,         ///< the time allowed for it is over
   kInterrupted,  ///< somebody asked it to stop

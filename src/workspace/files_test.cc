@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "fixtures/temporary_folder.h"
 #include "workspace/koord_files.h"
 #include "workspace/module_files.h"
 #include "workspace/places.h"
@@ -21,19 +21,9 @@ constexpr const char* kRobot =
 /// A folder of its own for each test.
 class Folder : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) /
-              (std::string("workspace-") + test->name() + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string Path(const std::string& name) const { return folder_.Path(name); }
   std::string Write(const std::string& name, const std::string& text) const {
-    fs::create_directories(fs::path(Path(name)).parent_path());
-    std::ofstream(Path(name)) << text;
-    return Path(name);
+    return folder_.Write(name, text);
   }
   size_t Count(diag::Kind kind) const {
     size_t count = 0;
@@ -50,7 +40,7 @@ class Folder : public testing::Test {
     return count;
   }
 
-  fs::path folder_;
+  fixtures::TemporaryFolder folder_;
   Session session_;
 };
 
@@ -72,7 +62,7 @@ TEST_F(SourceFiles, AMissingFileIsOneReport) {
 }
 
 TEST_F(SourceFiles, AFolderIsNoFile) {
-  EXPECT_FALSE(ReadSource(folder_.string(), session_));
+  EXPECT_FALSE(ReadSource(folder_.path().string(), session_));
   EXPECT_TRUE(SaysOnly(diag::Kind::kFileUnreadable));
 }
 
@@ -181,7 +171,7 @@ TEST_F(ModuleFiles, FilesThatImportEachOtherAreReadOnce) {
 
 TEST_F(ModuleFiles, AFileThatIsGivenTwiceIsReadOnce) {
   const std::string path = Write("robot.rondo", kRobot);
-  const auto module = LoadModule({path, path, (folder_ / "." / "robot.rondo").string()}, {}, session_);
+  const auto module = LoadModule({path, path, (folder_.path() / "." / "robot.rondo").string()}, {}, session_);
   EXPECT_TRUE(session_.diagnostics.all().empty());
   EXPECT_EQ(RobotsIn(*module), 1U);
 }

@@ -32,7 +32,7 @@ std::unique_ptr<LoadedModule> LoadModule(const std::vector<std::string>& files,
 
 /// Checks well-formedness, projections and processes of everything that was loaded. Returns what the typing
 /// of processes leaves open; nothing if something is wrong, which is in the session.
-std::optional<std::vector<choreo::SideCondition>> CheckStructure(LoadedModule& motion, Session& session);
+std::optional<std::vector<choreo::SideCondition>> CheckStructure(LoadedModule& module, Session& session);
 
 /// Checks everything that can be said of files without a solver: names, units, well-formedness, projections,
 /// processes. What is wrong is in the session.

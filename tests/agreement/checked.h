@@ -1,33 +1,21 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "choreo/graph/lower.h"
+#include "choreo/graph/lowered_module_test.h"
 #include "choreo/process/typing.h"
 #include "choreo/project/project.h"
 #include "choreo/semantics/team.h"
-#include "choreo/syntax/parser.h"
 #include "choreo/wellformed/wellformed.h"
 
 namespace rondo::choreo {
 
 /// A choreography with all that is made of it.
-struct Checked {
-  diag::SourceSet sources;
-  diag::Diagnostics diagnostics;
-  Module module;
-  expr::Arena arena;
-  std::unique_ptr<Declarations> declarations;
-  std::vector<Graph> graphs;
+struct Checked : LoweredModule {
   std::vector<LocalType> types;
 
-  explicit Checked(const std::string& text) {
-    Parse(sources, sources.Add("random", text), module, diagnostics);
-    if (diagnostics.has_errors()) return;
-    declarations = std::make_unique<Declarations>(module, arena, diagnostics);
-    graphs = Lower(module, *declarations);
+  explicit Checked(const std::string& text) : LoweredModule(text) {
     if (graphs.empty()) return;
     CheckWellFormed(graphs[0], diagnostics);
     if (diagnostics.has_errors()) return;

@@ -28,15 +28,15 @@ bool IsLong(const std::string& contract) {
 
 struct Loaded {
   workspace::Session session;
-  std::unique_ptr<workspace::LoadedModule> motion;
+  std::unique_ptr<workspace::LoadedModule> module;
   std::vector<contracts::ContractResult> contracts;
 };
 
 std::unique_ptr<Loaded> Load(const std::string& file) {
   auto loaded = std::make_unique<Loaded>();
-  loaded->motion = workspace::LoadModule({file}, {}, loaded->session);
-  if (loaded->motion && loaded->motion->declarations)
-    loaded->contracts = contracts::ContractsOf(*loaded->motion);
+  loaded->module = workspace::LoadModule({file}, {}, loaded->session);
+  if (loaded->module && loaded->module->declarations)
+    loaded->contracts = contracts::ContractsOf(*loaded->module);
   return loaded;
 }
 
@@ -180,7 +180,7 @@ TEST(Symmetry, OtherPlacesKeepTheContract) {
   EXPECT_EQ(reduced.anywhere, (std::vector<std::string>{"x0", "y0", "heading"}));
   const auto outcome = reach::Decide(reduced.made.problem, {}, base::StopToken());
   ASSERT_TRUE(outcome.ok() && std::holds_alternative<reach::Proved>(outcome.value()));
-  const contracts::ContractResult whole = find(contracts::ContractsOf(*loaded->motion, false));
+  const contracts::ContractResult whole = find(contracts::ContractsOf(*loaded->module, false));
   auto trajectories = reach::Trajectories::Of(whole.made.problem);
   ASSERT_TRUE(trajectories.ok());
   auto run = std::move(trajectories).value();

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "choreo/syntax/parser.h"
+#include "choreo/graph/lowered_module_test.h"
 
 namespace rondo::choreo {
 namespace {
@@ -24,21 +24,14 @@ world W { a: R  b: R  c: R }
 /// A choreography of a, b and c as a graph.
 class Lowered {
  public:
-  explicit Lowered(const std::string& steps, const std::string& before = "") {
-    Parse(sources_, sources_.Add("test", kRobots + before + "choreography C in W {\n" + steps + "\n}\n"),
-          module_, diagnostics_);
-    EXPECT_FALSE(diagnostics_.has_errors()) << diagnostics_.all()[0].message;
-    declarations_ = std::make_unique<Declarations>(module_, arena_, diagnostics_);
-    graphs_ = Lower(module_, *declarations_);
+  explicit Lowered(const std::string& steps, const std::string& before = "")
+      : m_(kRobots + before + "choreography C in W {\n" + steps + "\n}\n") {
+    EXPECT_NE(m_.declarations, nullptr) << m_.trouble();
   }
 
-  bool good() const { return graphs_.size() == 1; }
-  const Graph& graph() const { return graphs_.at(0); }
-  std::vector<Kind> kinds() const {
-    std::vector<Kind> kinds;
-    for (const auto& d : diagnostics_.all()) kinds.push_back(d.kind);
-    return kinds;
-  }
+  bool good() const { return m_.graphs.size() == 1; }
+  const Graph& graph() const { return m_.graphs.at(0); }
+  std::vector<Kind> kinds() const { return m_.kinds(); }
   size_t Count(NodeKind kind) const {
     return static_cast<size_t>(std::ranges::count(graph().nodes, kind, &Node::kind));
   }
@@ -51,12 +44,7 @@ class Lowered {
   const Node& Next(const Node& node, size_t i = 0) const { return graph()[node.next.at(i)]; }
 
  private:
-  diag::SourceSet sources_;
-  diag::Diagnostics diagnostics_;
-  Module module_;
-  expr::Arena arena_;
-  std::unique_ptr<Declarations> declarations_;
-  std::vector<Graph> graphs_;
+  LoweredModule m_;
 };
 
 // What is reported of these steps; no graph is made.

@@ -30,16 +30,7 @@ class Builder {
       : graph_(graph), arena_(arena), s_(graph, arena), facts_(FactsOf(graph, arena)), proved_(proved) {}
 
   Obligations Run(const std::vector<SideCondition>& conditions) {
-    for (const robot::Body& body : graph_.world->bodies) {
-      if (!body.body || !body.hull) continue;
-      s_.Apart(ObligationKind::kHull, body.type->name.span,
-               {fmt::format("the hull of `{}`", body.name.text),
-                fmt::format("the hull of `{}` does not contain its body", body.type->name.text)},
-               {arena_.True(), {*body.body}, arena_.True(), *body.hull});
-    }
-    s_.Sat(graph_.source->span, State("in which it begins"), {graph_.initially}, ObligationKind::kInitial);
-    Solid();
-    Initial();
+    StateWhole(s_);
     for (size_t i = 0; i < graph_.instances.size(); ++i) {
       s_.instances = {i};
       StateContract(s_, graph_.instances[i]);
@@ -51,50 +42,7 @@ class Builder {
   }
 
  private:
-  TermId In(const Shape& shape) { return robot::Contains(arena_, shape, graph_.world->point); }
   const std::string& NameOf(RobotId r) const { return graph_.NameOf(r); }
-
-  const Shape* BodyOf(RobotId r) {
-    const auto& body = graph_.BodyOf(r).body;
-    if (!body)
-      s_.Lacks(graph_.BodyOf(r).type->name.span,
-               fmt::format("the body of `{}`", graph_.BodyOf(r).type->name.text));
-    return body ? &*body : nullptr;
-  }
-
-  // -- the whole
-
-  // A shape that has no value, or no points, would be in nobody's way.
-  void Solid() {
-    for (const robot::Body& b : graph_.world->bodies) {
-      if (b.body) Exists(b.type->name.span, fmt::format("the body of `{}`", b.name.text), *b.body);
-    }
-    for (const robot::Obstacle& o : graph_.world->obstacles)
-      Exists(o.name.span, fmt::format("the obstacle `{}`", o.name.text), o.shape);
-  }
-
-  void Exists(diag::Span span, const std::string& what, const Shape& shape) {
-    s_.Unsat(ObligationKind::kBody, span,
-             {what + " has points, whatever the state is", what + " may have no points"},
-             {robot::MayBeEmpty(arena_, shape)});
-    s_.Sat(span, {what + " has points", what + " has no points"}, {In(shape)}, ObligationKind::kBody);
-  }
-
-  void Initial() {
-    std::vector<Member> members;
-    for (size_t i = 0; i < graph_.robots.size(); ++i) {
-      const Shape* body = BodyOf(RobotId(i));
-      if (body == nullptr) continue;
-      members.push_back({fmt::format("`{}`", NameOf(RobotId(i))), body, {}, {}});
-      for (const robot::Obstacle& o : graph_.world->obstacles) {
-        const std::string both = fmt::format("`{}` and the obstacle `{}`", NameOf(RobotId(i)), o.name.text);
-        s_.Apart(ObligationKind::kInitial, graph_.source->span,
-                 {both + " are apart initially", both + " may touch initially"},
-                 {graph_.initially, {*body, o.shape}, arena_.True(), {}});
-      }
-    }
-    StateApart(s_, ObligationKind::kInitial, graph_.source->span, members, {graph_.initially});
-  }
 
   // -- along the graph
 
@@ -240,7 +188,7 @@ class Builder {
   void Space(const Part& p, const std::vector<TermId>& during, const Context& context) {
     const robot::Contract& c = graph_.instances[p.instance].contract;
     const std::string who = Who(p);
-    const Shape* body = BodyOf(p.robot);
+    const Shape* body = BodyOf(s_, p.robot);
     if (body == nullptr || !c.footprint) return;
     const TermId state = arena_.And(during);
     const auto all_the_time = [&](ObligationKind kind, const Claim& claim, robot::Meeting meeting) {
@@ -382,54 +330,6 @@ class Builder {
 Obligations ObligationsOf(const Graph& graph, Arena& arena, const std::vector<SideCondition>& conditions,
                           const std::set<std::string>& proved) {
   return Builder(graph, arena, proved).Run(conditions);
-}
-
-bool IsRequired(ObligationKind kind) {
-  return kind != ObligationKind::kStart && kind != ObligationKind::kReached;
-}
-
-std::string_view KindName(ObligationKind kind) {
-  switch (kind) {
-    case ObligationKind::kHull:
-      return "hull";
-    case ObligationKind::kInitial:
-      return "initial";
-    case ObligationKind::kPrecondition:
-      return "precondition";
-    case ObligationKind::kAssumption:
-      return "assumption";
-    case ObligationKind::kGuarantee:
-      return "guarantee";
-    case ObligationKind::kBody:
-      return "body";
-    case ObligationKind::kCollision:
-      return "collision";
-    case ObligationKind::kObstacle:
-      return "obstacle";
-    case ObligationKind::kRegion:
-      return "region";
-    case ObligationKind::kFork:
-      return "fork";
-    case ObligationKind::kThread:
-      return "thread";
-    case ObligationKind::kTotalChoice:
-      return "total-choice";
-    case ObligationKind::kMessage:
-      return "message";
-    case ObligationKind::kContract:
-      return "contract";
-    case ObligationKind::kKeeping:
-      return "keeping";
-    case ObligationKind::kInterrupted:
-      return "interrupted";
-    case ObligationKind::kStart:
-      return "start";
-    case ObligationKind::kProcess:
-      return "process";
-    case ObligationKind::kReached:
-      return "reached";
-  }
-  return "";
 }
 
 }  // namespace rondo::choreo

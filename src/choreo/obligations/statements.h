@@ -86,6 +86,13 @@ class Statements {
   Obligations result_;
 };
 
+/// Returns the body of a robot. One that is missing is noted as such, and nullptr is returned.
+const robot::Shape* BodyOf(Statements& statements, RobotId robot);
+
+/// States what concerns the choreography as a whole: hulls contain bodies, shapes have points, there is a
+/// state in which it begins, and in each of them bodies are apart from each other and from obstacles.
+void StateWhole(Statements& statements);
+
 /// States what concerns one motion alone: that it can begin, go on and end (Definition 3.4).
 void StateContract(Statements& statements, const Instance& instance);
 

@@ -2,16 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include "choreo/graph/lower.h"
-#include "choreo/syntax/parser.h"
+#include "choreo/graph/lowered_module_test.h"
 
 namespace rondo::choreo {
 namespace {
 
 class Comparing : public testing::Test {
  protected:
-  Comparing() {
-    Parse(sources_, sources_.Add("test", R"(
+  Comparing()
+      : m_(R"(
 robot R {
   state x : length in [-9 m, 9 m]
   motion Idle() interruptible [0 s, inf) {}
@@ -19,25 +18,19 @@ robot R {
 world W { a: R  b: R }
 choreography C in W { { a: Idle(), b: Idle() } }
 process a in C { Idle() }
-)"),
-          module_, diagnostics_);
-    declarations_ = std::make_unique<Declarations>(module_, arena_, diagnostics_);
-    graphs_ = Lower(module_, *declarations_);
-    process_ = std::get<ProcessDef>(module_.items.back());
+)") {
+    process_ = std::get<ProcessDef>(m_.module.items.back());
     Begin();
   }
   void Begin() {
-    flow_ = BuildFlow(process_, graphs_.at(0), *declarations_);
-    compare_ = std::make_unique<Compare>(*flow_, graphs_[0], *declarations_);
+    flow_ = BuildFlow(process_, m_.graphs.at(0), *m_.declarations);
+    compare_ = std::make_unique<Compare>(*flow_, m_.graphs[0], *m_.declarations);
   }
-  expr::TermId Variable(const char* name) { return arena_.Variable(arena_.Declare(name, {}, arena_.Bool())); }
+  expr::TermId Variable(const char* name) {
+    return m_.arena.Variable(m_.arena.Declare(name, {}, m_.arena.Bool()));
+  }
 
-  diag::SourceSet sources_;
-  diag::Diagnostics diagnostics_;
-  Module module_;
-  expr::Arena arena_;
-  std::unique_ptr<Declarations> declarations_;
-  std::vector<Graph> graphs_;
+  LoweredModule m_;
   ProcessDef process_;
   std::optional<Flow> flow_;
   std::unique_ptr<Compare> compare_;
@@ -60,16 +53,16 @@ TEST_F(Comparing, LooseLabelsMayDifferInCaseAndPrefix) {
 }
 
 TEST_F(Comparing, WhatIsPlainlyTrueIsNotNeeded) {
-  compare_->Need({}, "", p_, arena_.True(), {});
+  compare_->Need({}, "", p_, m_.arena.True(), {});
   compare_->Need({}, "", p_, p_, {});
-  compare_->Need({}, "", arena_.False(), q_, {});
-  compare_->Need({}, "", arena_.And(p_, q_), q_, {});
+  compare_->Need({}, "", m_.arena.False(), q_, {});
+  compare_->Need({}, "", m_.arena.And(p_, q_), q_, {});
   EXPECT_EQ(compare_->conditions(), 0u);
 }
 
 TEST_F(Comparing, TheRestIsNeeded) {
   compare_->Need({}, "why", p_, q_, {NodeId(1)}, true);
-  compare_->Need({}, "", arena_.Or(p_, q_), q_, {});
+  compare_->Need({}, "", m_.arena.Or(p_, q_), q_, {});
   const auto conditions = compare_->TakeConditions();
   ASSERT_EQ(conditions.size(), 2u);
   EXPECT_EQ(conditions[0].what, "why");
@@ -89,11 +82,11 @@ TEST_F(Comparing, ConditionsOfAFailedAttemptAreForgotten) {
 }
 
 TEST_F(Comparing, OnlyWhatFailsEverywhereIsRefuted) {
-  EXPECT_TRUE(compare_->Refuted(p_, arena_.False()));
-  EXPECT_TRUE(compare_->Refuted(arena_.Not(p_), p_));
-  EXPECT_FALSE(compare_->Refuted(arena_.False(), arena_.False()));
+  EXPECT_TRUE(compare_->Refuted(p_, m_.arena.False()));
+  EXPECT_TRUE(compare_->Refuted(m_.arena.Not(p_), p_));
+  EXPECT_FALSE(compare_->Refuted(m_.arena.False(), m_.arena.False()));
   EXPECT_FALSE(compare_->Refuted(p_, q_));
-  EXPECT_FALSE(compare_->Refuted(p_, arena_.True()));
+  EXPECT_FALSE(compare_->Refuted(p_, m_.arena.True()));
 }
 
 TEST_F(Comparing, NothingRestartsByItself) {

@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "choreo/graph/lower.h"
-#include "choreo/syntax/parser.h"
+#include <optional>
+
+#include "choreo/graph/lowered_module_test.h"
 
 namespace rondo::choreo {
 namespace {
@@ -15,7 +16,7 @@ class Flows : public testing::Test {
  protected:
   // The graph of a process of robot a; what is reported is kept.
   std::optional<Flow> Of(const std::string& acts) {
-    Parse(sources_, sources_.Add("test", R"(
+    m_.emplace(std::string(R"(
 robot R {
   state x : length in [-9 m, 9 m]
   motion Idle() interruptible [0 s, inf) {}
@@ -23,26 +24,16 @@ robot R {
 world W { a: R  b: R }
 choreography C in W { { a: Idle(), b: Idle() } }
 process a in C {
-)" + acts + "\n}\n"),
-          module_, diagnostics_);
-    EXPECT_FALSE(diagnostics_.has_errors());
-    declarations_ = std::make_unique<Declarations>(module_, arena_, diagnostics_);
-    graphs_ = Lower(module_, *declarations_);
-    return BuildFlow(std::get<ProcessDef>(module_.items.back()), graphs_.at(0), *declarations_);
+)") + acts + "\n}\n");
+    EXPECT_NE(m_->declarations, nullptr);
+    return BuildFlow(std::get<ProcessDef>(m_->module.items.back()), m_->graphs.at(0), *m_->declarations);
   }
   Kinds Reported(const std::string& acts) {
     EXPECT_FALSE(Of(acts).has_value());
-    Kinds kinds;
-    for (const auto& d : diagnostics_.all()) kinds.push_back(d.kind);
-    return kinds;
+    return m_->kinds();
   }
 
-  diag::SourceSet sources_;
-  diag::Diagnostics diagnostics_;
-  Module module_;
-  expr::Arena arena_;
-  std::unique_ptr<Declarations> declarations_;
-  std::vector<Graph> graphs_;
+  std::optional<LoweredModule> m_;
 };
 
 TEST_F(Flows, ActsFollowEachOther) {
@@ -99,8 +90,8 @@ TEST_F(Flows, LoopsThatDoNothingAreReported) {
 
 TEST_F(Flows, BehindTheEndNothingIsReached) {
   EXPECT_TRUE(Of("exit\n Idle()").has_value());
-  ASSERT_EQ(diagnostics_.all().size(), 1u);
-  EXPECT_EQ(diagnostics_.all()[0].kind, Kind::kChoreoUnreachable);
+  ASSERT_EQ(m_->diagnostics.all().size(), 1u);
+  EXPECT_EQ(m_->diagnostics.all()[0].kind, Kind::kChoreoUnreachable);
 }
 
 TEST_F(Flows, RobotsMustExist) { EXPECT_EQ(Reported("send c.go()"), Kinds{Kind::kChoreoUndeclared}); }

@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include "choreo/graph/lower.h"
-#include "choreo/syntax/parser.h"
+#include "choreo/graph/lowered_module_test.h"
 
 namespace rondo::choreo {
 namespace {
@@ -51,24 +50,18 @@ struct Outcome {
 };
 
 Outcome Typed(const std::string& choreography, const std::string& processes) {
-  diag::SourceSet sources;
-  diag::Diagnostics diagnostics;
-  Module module;
-  expr::Arena arena;
-  Parse(sources, sources.Add("test", choreography + processes), module, diagnostics);
-  Declarations declarations(module, arena, diagnostics);
-  std::vector<Graph> graphs = Lower(module, declarations);
+  LoweredModule m(choreography + processes);
   std::vector<choreo::Typed> typed;
-  for (Graph& graph : graphs) {
+  for (Graph& graph : m.graphs) {
     choreo::Typed one{&graph, {}};
     for (size_t r = 0; r < graph.robots.size(); ++r)
-      one.types.push_back(Project(graph, module.exprs, RobotId(r), diagnostics));
+      one.types.push_back(Project(graph, m.module.exprs, RobotId(r), m.diagnostics));
     typed.push_back(std::move(one));
   }
-  EXPECT_EQ(diagnostics.errors(), 0u) << (diagnostics.all().empty() ? "" : diagnostics.all()[0].message);
+  EXPECT_EQ(m.diagnostics.errors(), 0u) << m.trouble();
   Outcome outcome;
-  outcome.open = CheckProcesses(module, typed, declarations);
-  for (const auto& d : diagnostics.all()) outcome.kinds.push_back(d.kind);
+  if (m.declarations != nullptr) outcome.open = CheckProcesses(m.module, typed, *m.declarations);
+  outcome.kinds = m.kinds();
   return outcome;
 }
 

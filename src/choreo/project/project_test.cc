@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include "choreo/graph/lower.h"
-#include "choreo/syntax/parser.h"
+#include "choreo/graph/lowered_module_test.h"
 
 namespace rondo::choreo {
 namespace {
@@ -13,18 +12,14 @@ namespace {
 /// A choreography of a, b and c, and its local types.
 class Projected {
  public:
-  explicit Projected(const std::string& steps) {
-    const std::string text =
-        "robot R {\n state x : length in [-9 m, 9 m]\n motion Idle() interruptible [0 s, inf) {}\n"
-        " motion Go() noninterruptible [1 s, 1 s] {}\n}\n"
-        "world W { a: R  b: R  c: R }\nchoreography C in W {\n" +
-        steps + "\n}\n";
-    Parse(sources_, sources_.Add("test", text), module_, diagnostics_);
-    declarations_ = std::make_unique<Declarations>(module_, arena_, diagnostics_);
-    graphs_ = Lower(module_, *declarations_);
-    EXPECT_EQ(graphs_.size(), 1u) << (diagnostics_.all().empty() ? "" : diagnostics_.all()[0].message);
-    for (size_t r = 0; r < 3 && !graphs_.empty(); ++r)
-      types_.push_back(Project(graphs_[0], module_.exprs, RobotId(r), diagnostics_));
+  explicit Projected(const std::string& steps)
+      : m_("robot R {\n state x : length in [-9 m, 9 m]\n motion Idle() interruptible [0 s, inf) {}\n"
+           " motion Go() noninterruptible [1 s, 1 s] {}\n}\n"
+           "world W { a: R  b: R  c: R }\nchoreography C in W {\n" +
+           steps + "\n}\n") {
+    EXPECT_EQ(m_.graphs.size(), 1u) << m_.trouble();
+    for (size_t r = 0; r < 3 && !m_.graphs.empty(); ++r)
+      types_.push_back(Project(graph(), m_.module.exprs, RobotId(r), m_.diagnostics));
   }
 
   const LocalState& At(char robot, StateId state) const { return Type(robot).states.at(state.index()); }
@@ -49,20 +44,15 @@ class Projected {
   }
   size_t Unclear() const {
     return static_cast<size_t>(
-        std::ranges::count(diagnostics_.all(), diag::Kind::kChoreoUnmergeable, &diag::Diagnostic::kind));
+        std::ranges::count(m_.diagnostics.all(), diag::Kind::kChoreoUnmergeable, &diag::Diagnostic::kind));
   }
-  std::string Text(char robot) const { return ToText(graphs_[0], module_.exprs, Type(robot)); }
-  const Graph& graph() const { return graphs_[0]; }
+  std::string Text(char robot) const { return ToText(m_.graphs[0], m_.module.exprs, Type(robot)); }
+  const Graph& graph() const { return m_.graphs[0]; }
 
  private:
-  std::string Says(const Action& a) const { return Describe(graphs_[0], a); }
+  std::string Says(const Action& a) const { return Describe(m_.graphs[0], a); }
 
-  diag::SourceSet sources_;
-  diag::Diagnostics diagnostics_;
-  Module module_;
-  expr::Arena arena_;
-  std::unique_ptr<Declarations> declarations_;
-  std::vector<Graph> graphs_;
+  LoweredModule m_;
   std::vector<LocalType> types_;
 };
 

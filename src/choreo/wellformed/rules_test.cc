@@ -1,9 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <memory>
-
-#include "choreo/graph/lower.h"
-#include "choreo/syntax/parser.h"
+#include "choreo/graph/lowered_module_test.h"
 #include "choreo/wellformed/wellformed.h"
 
 namespace rondo::choreo {
@@ -21,20 +18,11 @@ std::vector<Kind> Wrong(const std::string& steps, bool three = false, bool equal
       "world W { a: R b: R " +
       std::string(three ? "c: R " : "") + "}\nchoreography C in W {\n" +
       (equal ? "option equal_durations\n" : "") + steps + "\n}\n";
-  diag::SourceSet sources;
-  diag::Diagnostics diagnostics;
-  Module module;
-  expr::Arena arena;
-  Parse(sources, sources.Add("text", text), module, diagnostics);
-  EXPECT_FALSE(diagnostics.has_errors()) << text;
-  const auto declarations = std::make_unique<Declarations>(module, arena, diagnostics);
-  const std::vector<Graph> graphs = Lower(module, *declarations);
-  EXPECT_FALSE(diagnostics.has_errors()) << text;
-  EXPECT_EQ(graphs.size(), 1U) << text;
-  for (const Graph& graph : graphs) CheckWellFormed(graph, diagnostics);
-  std::vector<Kind> kinds;
-  for (const diag::Diagnostic& d : diagnostics.all()) kinds.push_back(d.kind);
-  return kinds;
+  LoweredModule m(text);
+  EXPECT_FALSE(m.diagnostics.has_errors()) << text;
+  EXPECT_EQ(m.graphs.size(), 1U) << text;
+  for (const Graph& graph : m.graphs) CheckWellFormed(graph, m.diagnostics);
+  return m.kinds();
 }
 
 std::vector<Kind> WrongOfThree(const std::string& steps) { return Wrong(steps, true); }

@@ -13,8 +13,8 @@ using diag::Kind;
 using lang::TypeKind;
 
 std::unique_ptr<Team> Team::Make(const Model& model, const TeamOptions& options,
-                                 diag::Diagnostics& diagnostics) {
-  std::unique_ptr<Team> team(new Team(model));
+                                 diag::Diagnostics& diagnostics, Heap heap) {
+  std::unique_ptr<Team> team(new Team(model, std::move(heap)));
   if (!team->Parameters(options, diagnostics) || !team->Compile(options, diagnostics)) return nullptr;
   return team;
 }
@@ -56,10 +56,7 @@ bool Team::Parameters(const TeamOptions& options, diag::Diagnostics& diagnostics
     std::optional<std::vector<Word>> value;
     const auto fixed = options.params.find(v);
     const auto explored = model_.exploration.values.find(v);
-    const auto made = options.made_params.find(v);
-    if (made != options.made_params.end()) {
-      value = made->second(heap_);
-    } else if (fixed != options.params.end()) {
+    if (fixed != options.params.end()) {
       value = fixed->second;
     } else if (variable.initial.valid()) {
       value = evaluate(variable.initial, variable.type);

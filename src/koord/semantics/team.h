@@ -60,9 +60,6 @@ struct TeamOptions {
   std::map<size_t, std::vector<Word>> choices;
   /// Reports whether the host computes an external function, by its number; empty: it computes none.
   std::function<bool(size_t)> hosted;
-  /// Gives parameters, by number of the variable, values that are made in the team's own heap: lists and texts are
-  /// handles into it.
-  std::map<size_t, std::function<std::vector<Word>(Heap&)>> made_params = {};
 };
 
 /// Holds a program compiled for a fixed number of robots and fixed parameters (Koord paper, Figs. 5 to 9),
@@ -71,8 +68,10 @@ class Team {
  public:
   /// Compiles the program. Returns nullptr, after a diagnostic, if it cannot be executed: a parameter has no
   /// value, say, or a function no body.
+  ///
+  /// @param heap  what the words of `params` and `choices` are handles into: lists and texts; the team begins with it.
   static std::unique_ptr<Team> Make(const Model& model, const TeamOptions& options,
-                                    diag::Diagnostics& diagnostics);
+                                    diag::Diagnostics& diagnostics, Heap heap = {});
 
   const Model& model() const { return model_; }
   const Layout& layout() const { return *layout_; }
@@ -129,7 +128,7 @@ class Team {
   void Collect(std::span<const std::span<const Word>> states);
 
  private:
-  explicit Team(const Model& model) : model_(model) {}
+  Team(const Model& model, Heap heap) : model_(model), heap_(std::move(heap)) {}
   void MakeBlank();
   std::vector<Word> Default(TypeId type);
   bool Parameters(const TeamOptions& options, diag::Diagnostics& diagnostics);

@@ -1,5 +1,7 @@
 #include "sim/draw/history.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -12,6 +14,11 @@ using nlohmann::json;
 std::string TextOf(const json& record, const char* key) {
   const bool text = record.is_object() && record.contains(key) && record[key].is_string();
   return text ? record[key].get<std::string>() : std::string();
+}
+
+std::string TitleOf(const History& history) {
+  return fmt::format("{}, {} robots, seed {}", TextOf(history.run, "program_name"), history.robots.size(),
+                     history.run.contains("seed") ? history.run["seed"].dump() : "?");
 }
 
 base::Result<History> ReadHistory(std::string_view bytes) {

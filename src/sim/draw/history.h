@@ -32,6 +32,9 @@ struct History {       // NOLINT(bugprone-exception-escape): moving JSON checks 
 /// Returns the text that a record has under this key; empty if it has none.
 std::string TextOf(const nlohmann::json& record, const char* key);
 
+/// Returns what a picture of this run is called: program, robots, seed.
+std::string TitleOf(const History& history);
+
 /// Reads the bytes of a trace (MCAP).
 /// @error if they are no trace of Rondo's simulator.
 base::Result<History> ReadHistory(std::string_view bytes);

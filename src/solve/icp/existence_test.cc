@@ -4,17 +4,13 @@
 
 #include <cmath>
 
+#include "solve/icp/prepare/real_variables_test.h"
+
 namespace rondo::solve::icp {
 namespace {
 
-class Existences : public testing::Test {
+class Existences : public RealVariables {
  protected:
-  TermId Number(const char* text) { return arena_.Number(arena_.Real(), *Rational::Parse(text)); }
-  TermId Variable(const char* name, icp::Variable::Kind kind) {
-    const TermId v = arena_.Variable(arena_.Declare(name, {}, arena_.Real()));
-    variables_.emplace(v, icp::Variable{v, kind});
-    return v;
-  }
   // Bounds by variable, around a point, where all of these terms are 0.
   std::optional<std::map<TermId, interval::Interval>> Around(const std::vector<TermId>& zeros,
                                                              const std::map<TermId, double>& near) {
@@ -36,8 +32,6 @@ class Existences : public testing::Test {
     return result;
   }
 
-  expr::Arena arena_;
-  std::unordered_map<TermId, icp::Variable> variables_;
   const TermId x_ = Variable("x", icp::Variable::Kind::kReal), y_ = Variable("y", icp::Variable::Kind::kReal);
   const TermId n_ = Variable("n", icp::Variable::Kind::kInt);
   const TermId xx_ = arena_.Mul(x_, x_), yy_ = arena_.Mul(y_, y_);

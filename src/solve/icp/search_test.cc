@@ -6,20 +6,15 @@
 #include <cmath>
 
 #include "expr/numeric.h"
+#include "solve/icp/prepare/real_variables_test.h"
 
 namespace rondo::solve::icp {
 namespace {
 
 using Kind = SearchResult::Kind;
 
-class Searches : public testing::Test {
+class Searches : public RealVariables {
  protected:
-  TermId Number(const char* text) { return arena_.Number(arena_.Real(), *Rational::Parse(text)); }
-  TermId Variable(const char* name, icp::Variable::Kind kind) {
-    const TermId v = arena_.Variable(arena_.Declare(name, {}, arena_.Real()));
-    variables_.emplace(v, icp::Variable{v, kind});
-    return v;
-  }
   // Nothing but the formula, and bounds of all variables in it.
   Tape TapeOf(TermId formula, int lo = -2, int hi = 2) {
     Prepared prepared;
@@ -48,8 +43,6 @@ class Searches : public testing::Test {
                       arena_.Le(Number("1.5"), arena_.Add(x_, y_)));
   }
 
-  expr::Arena arena_;
-  std::unordered_map<TermId, icp::Variable> variables_;
   const TermId x_ = Variable("x", icp::Variable::Kind::kReal), y_ = Variable("y", icp::Variable::Kind::kReal);
   const TermId n_ = Variable("n", icp::Variable::Kind::kInt);
   const TermId xx_ = arena_.Mul(x_, x_), yy_ = arena_.Mul(y_, y_);

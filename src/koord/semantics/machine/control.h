@@ -47,7 +47,7 @@ RONDO_INSTRUCTION RunReturn(Registers& r, const Instruction&) {
 }
 
 /// Has the host compute function `i.a` of `i.b` words of arguments, and pushes its `i.c` words.
-inline Fault CallHost(Registers& r, const Instruction& i) {
+RONDO_INSTRUCTION RunExternal(Registers& r, const Instruction& i) {
   r.top -= i.b;
   r.m.buffer.assign(i.c, 0);
   std::vector<Word> result;
@@ -58,8 +58,6 @@ inline Fault CallHost(Registers& r, const Instruction& i) {
   r.m.buffer.swap(result);
   return Fault::kNone;
 }
-
-RONDO_INSTRUCTION RunExternal(Registers& r, const Instruction& i) { return CallHost(r, i); }
 
 RONDO_INSTRUCTION RunSummaryBegin(Registers& r, const Instruction& i) {
   if (!r.m.check_summaries || r.m.in_summary || r.total) {

@@ -30,7 +30,7 @@ RONDO_INSTRUCTION RunListAt(Registers& r, const Instruction& i) {
 }
 
 // Below: the value, the list, the index.
-inline Fault SetListItem(Registers& r, const Instruction& i) {
+RONDO_INSTRUCTION RunListSet(Registers& r, const Instruction& i) {
   r.top -= 2 + i.a;
   const auto items = r.m.heap[r.top[i.a]];
   const int64_t k = ToInt(r.top[i.a + 1]);
@@ -45,8 +45,6 @@ inline Fault SetListItem(Registers& r, const Instruction& i) {
   *r.top++ = r.m.heap.Intern(r.m.buffer);
   return Fault::kNone;
 }
-
-RONDO_INSTRUCTION RunListSet(Registers& r, const Instruction& i) { return SetListItem(r, i); }
 
 RONDO_INSTRUCTION RunListAppend(Registers& r, const Instruction& i) {
   r.top -= i.a;

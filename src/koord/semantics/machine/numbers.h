@@ -40,30 +40,30 @@ inline int64_t EuclideanRest(int64_t a, int64_t b) {
   return rest < 0 ? (b > 0 ? rest + b : rest - b) : rest;
 }
 
-RONDO_INSTRUCTION RunDivInt(Registers& r, const Instruction&) {
-  const int64_t b = ToInt(*--r.top);
-  const int64_t a = ToInt(r.top[-1]);
-  if (b == 0) {
-    RONDO_TOTAL(Division);
-    r.top[-1] = 0;
-    return Fault::kNone;
-  }
-  if (a == std::numeric_limits<int64_t>::min() && b == -1) return Fault::kOverflow;
-  const int64_t towards_zero = a / b;
-  r.top[-1] = FromInt(a % b < 0 ? towards_zero - (b > 0 ? 1 : -1) : towards_zero);
+/// Does what `Integers` does, unless the divisor, which is on top, is 0.
+template <typename Operation>
+[[gnu::always_inline]] inline Fault Quotients(Registers& r, Operation operation) {
+  if (ToInt(r.top[-1]) != 0) return Integers(r, operation);
+  RONDO_TOTAL(Division);
+  --r.top;
+  r.top[-1] = 0;
   return Fault::kNone;
 }
 
+RONDO_INSTRUCTION RunDivInt(Registers& r, const Instruction&) {
+  return Quotients(r, [](int64_t a, int64_t b, int64_t* to) {
+    if (a == std::numeric_limits<int64_t>::min() && b == -1) return true;
+    const int64_t towards_zero = a / b;
+    *to = a % b < 0 ? towards_zero - (b > 0 ? 1 : -1) : towards_zero;
+    return false;
+  });
+}
+
 RONDO_INSTRUCTION RunModInt(Registers& r, const Instruction&) {
-  const int64_t b = ToInt(*--r.top);
-  const int64_t a = ToInt(r.top[-1]);
-  if (b == 0) {
-    RONDO_TOTAL(Division);
-    r.top[-1] = 0;
-    return Fault::kNone;
-  }
-  r.top[-1] = FromInt(b == -1 ? 0 : EuclideanRest(a, b));
-  return Fault::kNone;
+  return Quotients(r, [](int64_t a, int64_t b, int64_t* to) {
+    *to = b == -1 ? 0 : EuclideanRest(a, b);
+    return false;
+  });
 }
 
 RONDO_INSTRUCTION RunNegInt(Registers& r, const Instruction&) {

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "expr/numeric.h"
+#include "solve/icp/prepare/real_variables_test.h"
 
 namespace rondo::solve::icp {
 namespace {
@@ -13,15 +14,8 @@ namespace {
 using expr::Elementary;
 using Box = std::array<double, 4>;
 
-class Contraction : public testing::Test {
+class Contraction : public RealVariables {
  protected:
-  TermId Number(const char* text) { return arena_.Number(arena_.Real(), *Rational::Parse(text)); }
-  TermId Variable(const char* name, icp::Variable::Kind kind) {
-    const TermId v = arena_.Variable(arena_.Declare(name, {}, arena_.Real()));
-    variables_.emplace(v, icp::Variable{v, kind});
-    return v;
-  }
-  TermId Call(Elementary f, TermId a) { return arena_.Apply(f, {a}); }
   // Nothing is prepared: the formulas as they are. Both variables occur.
   Tape TapeOf(const std::vector<TermId>& formulas) {
     Prepared prepared;
@@ -68,8 +62,6 @@ class Contraction : public testing::Test {
   }
 
   using Arena = expr::Arena;
-  Arena arena_;
-  std::unordered_map<TermId, icp::Variable> variables_;
   const TermId x_ = Variable("x", icp::Variable::Kind::kReal), y_ = Variable("y", icp::Variable::Kind::kReal);
   static constexpr Box kBox{-2, 2, -2, 2};
 };

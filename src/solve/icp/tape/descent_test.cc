@@ -6,6 +6,7 @@
 
 #include "expr/numeric.h"
 #include "expr/smtlib/smtlib.h"
+#include "solve/icp/prepare/real_variables_test.h"
 
 namespace rondo::solve::icp {
 namespace {
@@ -13,14 +14,8 @@ namespace {
 using expr::Arena;
 using expr::Elementary;
 
-class Descents : public testing::Test {
+class Descents : public RealVariables {
  protected:
-  TermId Number(const char* text) { return arena_.Number(arena_.Real(), *Rational::Parse(text)); }
-  TermId Variable(const char* name, icp::Variable::Kind kind) {
-    const TermId v = arena_.Variable(arena_.Declare(name, {}, arena_.Real()));
-    variables_.emplace(v, icp::Variable{v, kind});
-    return v;
-  }
   Tape TapeOf(const std::vector<TermId>& formulas) {
     Prepared prepared;
     prepared.disjunctions = formulas;
@@ -45,8 +40,6 @@ class Descents : public testing::Test {
     return expr::Numeric(arena_, at).Violation(formula);
   }
 
-  expr::Arena arena_;
-  std::unordered_map<TermId, icp::Variable> variables_;
   const TermId x_ = Variable("x", icp::Variable::Kind::kReal), y_ = Variable("y", icp::Variable::Kind::kReal);
   const TermId n_ = Variable("n", icp::Variable::Kind::kInt);
   const TermId xx_ = arena_.Mul(x_, x_), yy_ = arena_.Mul(y_, y_), xy_ = arena_.Mul(x_, y_);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "expr/numeric.h"
+#include "solve/icp/prepare/real_variables_test.h"
 #include "solve/icp/tape/contractor.h"
 
 namespace rondo::solve::icp {
@@ -10,15 +11,8 @@ namespace {
 
 using expr::Elementary;
 
-class Influence : public testing::Test {
+class Influence : public RealVariables {
  protected:
-  TermId Number(const char* text) { return arena_.Number(arena_.Real(), *Rational::Parse(text)); }
-  TermId Variable(const char* name) {
-    const TermId v = arena_.Variable(arena_.Declare(name, {}, arena_.Real()));
-    variables_.emplace(v, icp::Variable{v, icp::Variable::Kind::kReal});
-    return v;
-  }
-  TermId Call(Elementary f, TermId a) { return arena_.Apply(f, {a}); }
   // The term, as it is, and behind it x + 2y, so that both variables occur.
   Tape TapeOf(TermId term) {
     Prepared prepared;
@@ -52,8 +46,6 @@ class Influence : public testing::Test {
     return scores;
   }
 
-  expr::Arena arena_;
-  std::unordered_map<TermId, icp::Variable> variables_;
   const TermId x_ = Variable("x"), y_ = Variable("y");
 };
 

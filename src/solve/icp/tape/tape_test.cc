@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "expr/numeric.h"
+#include "solve/icp/prepare/real_variables_test.h"
 #include "solve/icp/tape/contractor.h"
 
 namespace rondo::solve::icp {
@@ -13,15 +14,9 @@ namespace {
 
 using expr::Elementary;
 
-class Tapes : public testing::Test {
+class Tapes : public RealVariables {
  protected:
-  TermId Number(const char* text) { return arena_.Number(arena_.Real(), *Rational::Parse(text)); }
-  TermId Variable(const char* name) {
-    const TermId v = arena_.Variable(arena_.Declare(name, {}, arena_.Real()));
-    variables_.emplace(v, icp::Variable{v, icp::Variable::Kind::kReal});
-    return v;
-  }
-  TermId Call(Elementary f, TermId a) { return arena_.Apply(f, {a}); }
+  using RealVariables::Call;
   TermId Call(Elementary f, TermId a, TermId b) { return arena_.Apply(f, {a, b}); }
   Tape Compare(TermId term) {
     Prepared prepared;
@@ -62,8 +57,6 @@ class Tapes : public testing::Test {
             Call(Elementary::kPower, positive, y_)};
   }
 
-  expr::Arena arena_;
-  std::unordered_map<TermId, icp::Variable> variables_;
   const TermId x_ = Variable("x"), y_ = Variable("y");
 };
 
