@@ -19,6 +19,7 @@ void AddProjectVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddProveVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddExploreVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddSimulateVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddCampaignVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddReplayVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddPlotVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddReachVerb(CLI::App& app, verdict::ExitStatus& status);

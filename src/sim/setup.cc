@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "koord/semantics/machine/values.h"
+#include "sim/parameters.h"
 #include "sim/run.h"
 
 namespace rondo::sim {
@@ -38,22 +39,7 @@ bool Run::MakeTeam() {
   options.robots = fleet_.robots.size();
   options.hosted = [&](size_t f) { return functions_.Knows(f); };
   const size_t before = diagnostics_.errors();
-  for (const auto& [name, given] : fleet_.params) {
-    const int v = Find(name);
-    if (v < 0 || model_.variables[static_cast<size_t>(v)].kind != koord::VariableKind::kParam) {
-      diagnostics_.Report(Kind::kFleetValue, given.span,
-                          fmt::format("the program has no parameter `{}`", name));
-      continue;
-    }
-    const lang::TypeId type = model_.variables[static_cast<size_t>(v)].type;
-    const auto words = koord::semantics::FromJson(model_.types, heap, type, given.value);
-    if (words) {
-      options.params[static_cast<size_t>(v)] = *words;
-    } else {
-      diagnostics_.Report(Kind::kFleetValue, given.span,
-                          fmt::format("`{}` must be a `{}`", name, model_.types.Name(type)));
-    }
-  }
+  ReadParameters(model_, fleet_, options, heap, diagnostics_);
   team_ = Team::Make(model_, options, diagnostics_, std::move(heap));
   if (team_ == nullptr || diagnostics_.errors() != before) return false;
   for (const auto& part : team_->unchecked()) {

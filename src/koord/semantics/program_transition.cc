@@ -82,44 +82,55 @@ void ProgramTransition::Run(size_t robot, uint32_t event, uint32_t entry, Effect
   machine.Undo();
 }
 
-void ProgramTransition::Prepare(std::span<const Word> state) {
+void ProgramTransition::Start(std::span<const Word> state) {
   init_ = false;
   memory_.assign(state.begin(), state.end());
+  team_.machine().SetMemory(memory_.data());
+  std::ranges::fill(counts_, 0);
+}
+
+void ProgramTransition::Prepare(std::span<const Word> state) {
+  Start(state);
+  for (size_t r = 0; r < team_.robots(); ++r) Find(r);
+}
+
+void ProgramTransition::Prepare(std::span<const Word> state, size_t robot) {
+  Start(state);
+  Find(robot);
+}
+
+void ProgramTransition::Find(size_t r) {
   Machine& machine = team_.machine();
-  machine.SetMemory(memory_.data());
   const Layout& layout = team_.layout();
-  for (size_t r = 0; r < team_.robots(); ++r) {
-    counts_[r] = 0;
-    if (memory_[layout.block(r) + layout.stopped()] != 0) continue;
-    for (uint32_t e = 0; e < team_.events().size(); ++e) {
-      const EventCode& event = team_.events()[e];
-      if (event.guard != 0) {
-        const bool defined = machine.Run(event.guard, r, false);
-        if (defined && machine.result()[0] == 0) continue;
-        if (!defined) {
-          Effect& effect = Next(r);
-          effect.event = e;
-          effect.urgent = event.urgent;
-          effect.locks = effect.idle = false;
-          effect.fault = machine.fault();
-          effect.fault_span = machine.fault_span();
-          continue;
-        }
-      }
-      Each([&] {
+  if (memory_[layout.block(r) + layout.stopped()] != 0) return;
+  for (uint32_t e = 0; e < team_.events().size(); ++e) {
+    const EventCode& event = team_.events()[e];
+    if (event.guard != 0) {
+      const bool defined = machine.Run(event.guard, r, false);
+      if (defined && machine.result()[0] == 0) continue;
+      if (!defined) {
         Effect& effect = Next(r);
+        effect.event = e;
         effect.urgent = event.urgent;
-        Run(r, e, event.body, effect);
-        return &effect.fault;
-      });
+        effect.locks = effect.idle = false;
+        effect.fault = machine.fault();
+        effect.fault_span = machine.fault_span();
+        continue;
+      }
     }
-    // An urgent event excludes those that are not.
-    std::vector<Effect>& all = effects_[r];
-    const auto end = all.begin() + static_cast<ptrdiff_t>(counts_[r]);
-    if (any_urgent_ && std::any_of(all.begin(), end, [](const Effect& e) { return e.urgent; })) {
-      counts_[r] = static_cast<size_t>(
-          std::stable_partition(all.begin(), end, [](const Effect& e) { return e.urgent; }) - all.begin());
-    }
+    Each([&] {
+      Effect& effect = Next(r);
+      effect.urgent = event.urgent;
+      Run(r, e, event.body, effect);
+      return &effect.fault;
+    });
+  }
+  // An urgent event excludes those that are not.
+  std::vector<Effect>& all = effects_[r];
+  const auto end = all.begin() + static_cast<ptrdiff_t>(counts_[r]);
+  if (any_urgent_ && std::any_of(all.begin(), end, [](const Effect& e) { return e.urgent; })) {
+    counts_[r] = static_cast<size_t>(
+        std::stable_partition(all.begin(), end, [](const Effect& e) { return e.urgent; }) - all.begin());
   }
 }
 

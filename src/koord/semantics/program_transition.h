@@ -49,6 +49,8 @@ class ProgramTransition {
   /// Finds what each robot can do in `state` by running its enabled events there. The state must stay as it
   /// is until the last `Enumerate`.
   void Prepare(std::span<const Word> state);
+  /// Does the same for one robot alone; the others have no effects then.
+  void Prepare(std::span<const Word> state, size_t robot);
   /// Does the same for the one execution of `init` by every robot, before the first round.
   void PrepareInit(std::span<const Word> state);
 
@@ -81,6 +83,8 @@ class ProgramTransition {
   const std::vector<LastWriter>& last_writers() const { return last_; }
 
  private:
+  void Start(std::span<const Word> state);
+  void Find(size_t robot);
   void Run(size_t robot, uint32_t event, uint32_t entry, Effect& effect);
   void RunInits(size_t robot, Effect& effect);
   void Each(const std::function<Fault*()>& run);

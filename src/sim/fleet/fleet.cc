@@ -1,34 +1,27 @@
 #include "sim/fleet/fleet.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
-#include <cmath>
+#include <algorithm>
 #include <set>
 
 #include "lang/suggest.h"
+#include "sim/fleet/tables.h"
 
 namespace rondo::sim {
 namespace {
 
 using diag::Kind;
-using diag::Span;
-using nlohmann::json;
 
-class Reader {
+class Reader : Tables {
  public:
   Reader(const diag::SourceSet& sources, diag::FileId file, diag::Diagnostics& diagnostics)
-      : sources_(sources), file_(file), diagnostics_(diagnostics) {}
+      : Tables(sources, file, diagnostics), file_(file), diagnostics_(diagnostics) {}
 
   Fleet Run() {
-    toml::table root;
-    try {
-      root = toml::parse(sources_.text(file_), sources_.path(file_));
-    } catch (const toml::parse_error& error) {
-      diagnostics_.Report(Kind::kFleetSyntax, At(error.source()),
-                          fmt::format("this is not TOML: {}", error.description()));
-      return fleet_;
-    }
+    const size_t before = diagnostics_.errors();
+    const toml::table root = Root();
+    if (diagnostics_.errors() != before) return std::move(fleet_);
     Known(root, {"run", "world", "lidar", "map", "planner", "params", "initial", "robot"}, "a fleet file");
     if (const auto* run = Table(root, "run")) Run(*run);
     if (const auto* world = Table(root, "world")) ReadWorld(*world);
@@ -50,125 +43,6 @@ class Reader {
   }
 
  private:
-  static constexpr const char* kLost = "this number is too large or too small to be read";
-
-  Span At(const toml::source_region& region) const {
-    // Lines and columns count from 1; a column is a code point.
-    uint32_t line = std::max<uint32_t>(1, region.begin.line);
-    const std::string_view text = sources_.text(file_);
-    uint32_t begin = 0;
-    for (; line > 1 && begin < text.size(); ++begin) line -= text[begin] == '\n' ? 1 : 0;
-    for (uint32_t column = 1; column < region.begin.column && begin < text.size(); ++column) {
-      ++begin;
-      while (begin < text.size() && (static_cast<unsigned char>(text[begin]) & 0xC0U) == 0x80U) ++begin;
-    }
-    uint32_t end = begin;
-    while (end < text.size() && text[end] != '\n' && text[end] != '#' && text[end] != ',' && end < begin + 60)
-      ++end;
-    while (end > begin + 1 && std::isspace(static_cast<unsigned char>(text[end - 1]))) --end;
-    return {file_, begin, std::max(end, begin + 1)};
-  }
-  Span At(const toml::node& node) const { return At(node.source()); }
-
-  // A number that is not zero and has become zero, or infinite.
-  bool Lost(const toml::node& node) {
-    if (!node.is_floating_point()) return false;
-    const double value = node.value<double>().value_or(0);
-    if (std::isnormal(value)) return false;
-    const Span span = At(node);
-    const std::string_view text =
-        std::string_view(sources_.text(file_)).substr(span.begin, span.end - span.begin);
-    return text.substr(0, text.find_first_of("eE")).find_first_of("123456789") != std::string_view::npos;
-  }
-
-  void Wrong(Span span, std::string message) {
-    diagnostics_.Report(Kind::kFleetValue, span, std::move(message));
-  }
-
-  void Known(const toml::table& table, std::initializer_list<const char*> keys, const char* what) {
-    for (const auto& [key, node] : table) {
-      if (std::any_of(keys.begin(), keys.end(), [&](const char* k) { return key.str() == k; })) continue;
-      auto& report = diagnostics_.Report(Kind::kFleetValue, At(key.source()),
-                                         fmt::format("{} has no `{}`", what, key.str()));
-      const std::vector<std::string> all(keys.begin(), keys.end());
-      const std::string near = lang::Suggest(key.str(), all);
-      report.Help(near.empty() ? fmt::format("it may have {}", fmt::join(all, ", "))
-                               : fmt::format("did you mean `{}`?", near));
-    }
-  }
-
-  const toml::table* Table(const toml::table& parent, const char* name) {
-    const toml::node* node = parent.get(name);
-    if (node == nullptr) return nullptr;
-    if (node->as_table() == nullptr)
-      Wrong(At(*node), fmt::format("`{}` must be a table: `[{}]`", name, name));
-    return node->as_table();
-  }
-
-  double Number(const toml::table& table, const char* name, double usual, double low, double high) {
-    const toml::node* node = table.get(name);
-    if (node == nullptr) return usual;
-    const auto value = node->value<double>();
-    if (Lost(*node)) {
-      Wrong(At(*node), kLost);
-    } else if (!value || node->is_boolean() || !std::isfinite(*value)) {
-      Wrong(At(*node), fmt::format("`{}` must be a number", name));
-    } else if (*value < low || *value > high) {
-      Wrong(At(*node), fmt::format("`{}` must lie between {} and {}", name, low, high));
-    } else {
-      return *value;
-    }
-    return usual;
-  }
-
-  size_t Whole(const toml::table& table, const char* name, size_t usual) {
-    const double value = Number(table, name, static_cast<double>(usual), 1, 100'000);
-    if (value != std::floor(value))
-      Wrong(At(*table.get(name)), fmt::format("`{}` must be a whole number", name));
-    return static_cast<size_t>(value);
-  }
-
-  std::string Word(const toml::table& table, const char* name, const std::string& usual,
-                   std::initializer_list<const char*> choices) {
-    const toml::node* node = table.get(name);
-    if (node == nullptr) return usual;
-    const auto value = node->value<std::string>();
-    const bool known =
-        value && std::any_of(choices.begin(), choices.end(), [&](const char* c) { return *value == c; });
-    if (known) return *value;
-    auto& report =
-        diagnostics_.Report(Kind::kFleetValue, At(*node), fmt::format("`{}` cannot be this", name));
-    report.Help(fmt::format("it can be {}", fmt::join(choices, ", ")));
-    return usual;
-  }
-
-  Point ReadPoint(const toml::table& table, const char* name, const Point& usual, bool needed, Span where) {
-    const toml::node* node = table.get(name);
-    if (node == nullptr) {
-      if (needed) Wrong(where, fmt::format("`{}` is missing", name));
-      return usual;
-    }
-    const toml::array* array = node->as_array();
-    Point point{};
-    if (array == nullptr || array->size() != 3) {
-      Wrong(At(*node), fmt::format("`{}` must be three numbers: `[x, y, z]`", name));
-      return usual;
-    }
-    for (size_t i = 0; i < 3; ++i) {
-      const auto value = (*array)[i].value<double>();
-      if (Lost((*array)[i])) {
-        Wrong(At((*array)[i]), kLost);
-        return usual;
-      }
-      if (!value || !std::isfinite(*value) || std::fabs(*value) > 1e6) {
-        Wrong(At((*array)[i]), fmt::format("`{}` needs numbers below a million", name));
-        return usual;
-      }
-      point[i] = *value;
-    }
-    return point;
-  }
-
   void Run(const toml::table& t) {
     Known(t,
           {"delta", "duration", "step", "monitor", "pose_rate", "skip", "integrator", "policy", "seed",
@@ -224,38 +98,6 @@ class Reader {
     fleet_.lidar.rate = Number(t, "rate", fleet_.lidar.rate, 0.01, 1000);
     fleet_.lidar.noise = Number(t, "noise", 0, 0, 100);
     fleet_.lidar.resolution = Number(t, "resolution", 0, 0, 100);
-  }
-
-  void ForEach(const toml::table& t, const char* name, const std::function<void(const toml::table&)>& visit) {
-    const toml::node* node = t.get(name);
-    if (node == nullptr) return;
-    const toml::array* array = node->as_array();
-    if (array == nullptr) return Wrong(At(*node), fmt::format("write `[[{}]]` for each", name));
-    for (const toml::node& item : *array) {
-      if (item.as_table() == nullptr)
-        Wrong(At(item), fmt::format("write `[[{}]]` for each", name));
-      else
-        visit(*item.as_table());
-    }
-  }
-
-  json ToJson(const toml::node& node) {
-    if (const auto* table = node.as_table()) {
-      json object = json::object();
-      for (const auto& [key, value] : *table) object[std::string(key.str())] = ToJson(value);
-      return object;
-    }
-    if (const auto* array = node.as_array()) {
-      json list = json::array();
-      for (const toml::node& value : *array) list.push_back(ToJson(value));
-      return list;
-    }
-    if (node.is_boolean()) return node.value<bool>().value();
-    if (node.is_integer()) return node.value<int64_t>().value();
-    if (Lost(node)) Wrong(At(node), kLost);
-    if (node.is_floating_point()) return node.value<double>().value();
-    if (node.is_string()) return node.value<std::string>().value();
-    return nullptr;
   }
 
   void Values(const toml::table& t, std::map<std::string, FleetValue>& values) {
@@ -333,7 +175,6 @@ class Reader {
           .Help("add one: `[[robot]]`");
   }
 
-  const diag::SourceSet& sources_;
   diag::FileId file_;
   diag::Diagnostics& diagnostics_;
   Fleet fleet_;

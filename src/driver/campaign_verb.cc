@@ -1,0 +1,223 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/counted.h"
+#include "base/file.h"
+#include "driver/command.h"
+#include "driver/terminal.h"
+#include "driver/verbs.h"
+#include "runs/simulation_files.h"
+#include "sim/campaign/any_functions.h"
+#include "sim/campaign/campaign.h"
+#include "sim/campaign/scenario_file.h"
+#include "sim/parameters.h"
+#include "workspace/koord_files.h"
+
+namespace rondo::driver {
+
+using verdict::ExitStatus;
+
+namespace {
+
+namespace campaign = sim::campaign;
+
+struct Options {
+  std::string file;
+  std::string spec;
+  std::string fleet;
+  uint64_t runs = 1000;
+  uint64_t rounds = 30;
+  uint64_t seed = 1;
+  std::vector<size_t> robots;
+  std::string scenarios;
+  std::string save;
+  bool json = false;
+};
+
+// Compiles teams for campaigns: parameters from the fleet, external functions that give anything.
+class Teams {
+ public:
+  Teams(const koord::Model& model, const sim::Fleet& fleet) : model_(model), fleet_(fleet) {}
+
+  std::unique_ptr<koord::semantics::Team> Make(size_t robots, diag::Diagnostics& diagnostics) {
+    koord::semantics::TeamOptions options;
+    options.robots = robots;
+    options.hosted = [](size_t) { return true; };
+    koord::semantics::Heap heap;
+    sim::ReadParameters(model_, fleet_, options, heap, diagnostics);
+    auto team = koord::semantics::Team::Make(model_, options, diagnostics, std::move(heap));
+    if (team == nullptr) return team;
+    hosts_.push_back(std::make_unique<campaign::AnyFunctions>(*team));
+    team->machine().SetHost(hosts_.back().get());
+    return team;
+  }
+
+ private:
+  const koord::Model& model_;
+  const sim::Fleet& fleet_;
+  std::vector<std::unique_ptr<campaign::AnyFunctions>> hosts_;
+};
+
+nlohmann::json ToJson(const campaign::CampaignReport& report, double seconds) {
+  nlohmann::json steps = nlohmann::json::array();
+  for (const uint64_t pair : report.visited) {
+    steps.push_back(fmt::format("{} -> {}",
+                                Name(static_cast<runtime::rounds::Phase>(pair / campaign::kPhases)),
+                                Name(static_cast<runtime::rounds::Phase>(pair % campaign::kPhases))));
+  }
+  nlohmann::json json{{"runs", report.runs},
+                      {"rounds", report.rounds},
+                      {"datagrams", report.datagrams},
+                      {"virtual_seconds", report.seconds},
+                      {"seconds", seconds},
+                      {"steps_of_cores", steps},
+                      {"failure", nullptr}};
+  if (!report.failure) return json;
+  nlohmann::json findings = nlohmann::json::array();
+  for (const auto& f : report.failure->findings)
+    findings.push_back({{"wrong", history::Name(f.wrong)}, {"text", f.text}, {"entry", f.entry}});
+  json["failure"] = {{"what", report.failure->What()},
+                     {"seed", report.failure->scenario.seed},
+                     {"robots", report.failure->scenario.robots},
+                     {"findings", findings},
+                     {"scenario", campaign::WriteScenario(report.failure->scenario, "")}};
+  return json;
+}
+
+// What is to be searched, as the command line and the files say.
+campaign::CampaignOptions ReadOptions(const Options& options, workspace::Session& session) {
+  campaign::CampaignOptions search;
+  search.runs = options.runs;
+  search.rounds = options.rounds;
+  search.seed = options.seed;
+  if (!options.robots.empty()) {
+    search.least = *std::ranges::min_element(options.robots);
+    search.most = *std::ranges::max_element(options.robots);
+  }
+  if (options.scenarios.empty()) return search;
+  if (const auto file = workspace::ReadSource(options.scenarios, session))
+    search.scenarios = campaign::ReadScenarios(session.sources, *file, session.diagnostics);
+  return search;
+}
+
+campaign::CampaignReport Search(Teams& teams, campaign::CampaignOptions& search, double& seconds) {
+  diag::Diagnostics again;  // the same for every size
+  const campaign::Fleet::MakeTeam make = [&](size_t robots) { return teams.Make(robots, again); };
+  campaign::Fleet robots(make);
+  ProgressLine line;
+  const InterruptScope interrupt(search.stop);
+  const auto begin = std::chrono::steady_clock::now();
+  const auto since = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  double last = 0;
+  search.progress = [&](uint64_t done) {
+    const double now = since();
+    if (now < last + 0.2) return;
+    last = now;
+    line.Show(
+        fmt::format("[{} of {} runs] {:.0f} runs/s", done, search.runs, static_cast<double>(done) / now));
+  };
+  campaign::CampaignReport report = campaign::Search(robots, make, search);
+  seconds = since();
+  return report;
+}
+
+// Keeps the scenario that fails; returns where.
+std::string Save(const campaign::Failure& failure, const std::string& program, const std::string& path) {
+  const std::string saved =
+      path.empty() ? std::filesystem::path(program).stem().string() + ".scenario.toml" : path;
+  const auto written =
+      base::WriteFileAtomically(saved, campaign::WriteScenario(failure.scenario, campaign::Story(failure)));
+  if (written.ok()) return saved;
+  PrintFailure(fmt::format("cannot write `{}`: {}", saved, written.error().message));
+  return {};
+}
+
+ExitStatus Run(const Options& options) {
+  workspace::Session session;
+  const runs::SimulationFiles files = runs::FindSimulationFiles(options.file, options.spec, options.fleet);
+  const auto loaded = workspace::LoadKoord({files.program, files.spec, true}, session);
+  sim::Fleet fleet;
+  std::error_code ignored;
+  if (loaded && (!options.fleet.empty() || std::filesystem::exists(files.fleet, ignored))) {
+    if (const auto file = workspace::ReadSource(files.fleet, session))
+      fleet = sim::ReadFleet(session.sources, *file, session.diagnostics);
+  }
+  campaign::CampaignOptions search = ReadOptions(options, session);
+  campaign::CampaignReport report;
+  double seconds = 0;
+  ExitStatus status = ExitStatus::kRejected;
+  if (loaded && !session.diagnostics.has_errors()) {
+    Teams teams(loaded->model, fleet);
+    const size_t first = search.scenarios.empty() ? search.least : search.scenarios[0].robots;
+    if (teams.Make(first, session.diagnostics) != nullptr && !session.diagnostics.has_errors()) {
+      report = Search(teams, search, seconds);
+      status = report.failure   ? ExitStatus::kRejected
+               : report.stopped ? ExitStatus::kUndecided
+                                : ExitStatus::kEstablished;
+    }
+  }
+  const std::string saved =
+      report.failure ? Save(*report.failure, files.program, options.save) : std::string();
+  if (options.json) {
+    nlohmann::json out = ToJson(report, seconds);
+    out["command"] = "campaign";
+    out["file"] = files.program;
+    out["seed"] = options.seed;
+    out["status"] = status;
+    out["diagnostics"] = diag::RenderJson(session.sources, session.diagnostics);
+    if (!saved.empty()) out["saved"] = saved;
+    PrintJson(out);
+    return status;
+  }
+  PrintDiagnostics(session.sources, session.diagnostics);
+  if (report.runs == 0) return status;
+  Print(fmt::format("{}: {}, {}, {:.0f} s of virtual time in {:.1f} s\n", files.program,
+                    base::Counted(report.runs, "run"), base::Counted(report.rounds, "round"), report.seconds,
+                    seconds));
+  if (report.failure) Print("\n" + campaign::Story(*report.failure));
+  if (!saved.empty())
+    Print(fmt::format("\nthe run is in {0}: `rondo campaign {1} --scenarios {0}`\n", saved, files.program));
+  if (report.stopped) Print(fmt::format("interrupted: go on with `--seed {}`\n", options.seed + report.runs));
+  if (status == ExitStatus::kEstablished) Print("nothing is wrong in any of them\n");
+  return status;
+}
+
+}  // namespace
+
+void AddCampaignVerb(CLI::App& app, ExitStatus& status) {
+  auto options = std::make_shared<Options>();
+  Command verb(app, "campaign", "look for faults of the network and of robots that break a Koord fleet");
+  verb.Option(
+          "FILE", options->file,
+          "a Koord program, with or without `.koord`; parameters come from `NAME.toml` beside it, if there is one")
+      .Required();
+  verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
+  verb.Option("--fleet", options->fleet, "the fleet, if it is not beside the program");
+  verb.Option("--runs", options->runs, "how many runs; default: 1000")
+      .Between(uint64_t{1}, uint64_t{1'000'000'000});
+  verb.Option("--rounds", options->rounds, "how long each is; default: 30")
+      .Between(uint64_t{1}, uint64_t{1'000'000});
+  verb.Option("--seed", options->seed, "of the first run; the others count up; default: 1");
+  verb.Option("--robots", options->robots, "team sizes, from the least to the greatest; default: 2 to 7")
+      .Between(size_t{1}, size_t{64});
+  verb.Option("--scenarios", options->scenarios, "run these scenarios (TOML) instead of random ones");
+  verb.Option("--save", options->save, "where to write the scenario that fails; default: NAME.scenario.toml");
+  verb.Flag("--json", options->json, "the result as JSON on standard output");
+  verb.Footer(
+      "examples:\n"
+      "  rondo campaign examples/koord/mutex\n"
+      "  rondo campaign examples/koord/delivery --robots 3 5 --runs 10000\n"
+      "  rondo campaign examples/koord/mutex --scenarios mutex.scenario.toml\n"
+      "\n"
+      "Sensors and external functions give anything here: it is the protocol that is tried (docs/runtime.md), not the program.\n"
+      "exit status: 0 nothing is wrong, 1 something is, 3 interrupted");
+  verb.Run([options, &status] { status = Run(*options); });
+}
+
+}  // namespace rondo::driver

@@ -1,0 +1,155 @@
+#include "koord/node/node.h"
+
+#include <algorithm>
+
+#include "base/mixed.h"
+#include "runtime/rounds/merge.h"
+
+namespace rondo::koord::node {
+
+using runtime::codec::Bytes;
+using runtime::codec::Reader;
+using runtime::codec::View;
+using runtime::codec::Writer;
+using runtime::rounds::Alternative;
+using semantics::Effect;
+
+Node::Node(semantics::Team& team, uint32_t robot, Sensors* sensors, uint64_t seed)
+    : team_(team),
+      robot_(robot),
+      sensors_(sensors),
+      seed_(seed),
+      cells_(team),
+      transition_(team),
+      state_(team.blank()) {}
+
+void Node::Reset(std::span<const Word> state, uint64_t seed) {
+  state_.assign(state.begin(), state.end());
+  seed_ = seed;
+}
+
+void Node::EncodeEffect(const Effect& effect, Bytes& out) const {
+  // Whole cells; of one that is written in parts, all words.
+  std::vector<std::pair<Cell, std::vector<Word>>> written;
+  const auto cell_of = [&](Cell cell) -> std::vector<Word>& {
+    for (auto& [known, words] : written) {
+      if (known == cell) return words;
+    }
+    const auto at = state_.begin() + cells_.Address(cell, robot_);
+    written.emplace_back(cell, std::vector<Word>(at, at + cells_.Width(cell)));
+    return written.back().second;
+  };
+  for (const Effect::Write& write : effect.own) {
+    const Cell cell = cells_.At(write.at);
+    cell_of(cell)[write.at - cells_.Address(cell, robot_)] = write.value;
+  }
+  for (const Effect::Shared& shared : effect.shared) {
+    for (uint32_t k = 0; k < shared.unit.width; ++k) {
+      const uint32_t at = shared.unit.at + k;
+      const Cell cell = cells_.At(at);
+      cell_of(cell)[at - cells_.Address(cell, robot_)] = effect.words[shared.values + k];
+    }
+  }
+  Writer writer(out);
+  writer.Number(written.size());
+  for (const auto& [cell, words] : written) cells_.Encode(cell, words, writer);
+}
+
+void Node::Contribute(uint64_t round, Bytes& out) {
+  // The robot sees the world as it is now; the store gets that with the frame.
+  std::vector<Word> seen = state_;
+  Bytes inputs;
+  Writer writer(inputs);
+  writer.Number(cells_.sensors().size());
+  for (const Cell cell : cells_.sensors()) {
+    const std::span<Word> words(seen.data() + cells_.Address(cell, robot_), cells_.Width(cell));
+    if (sensors_ != nullptr) sensors_->Read(robot_, round, cell, words);
+    cells_.Encode(cell, words, writer);
+  }
+  std::swap(seen, state_);
+  if (round == 0)
+    transition_.PrepareInit(state_);
+  else
+    transition_.Prepare(state_, robot_);
+  const auto effects = transition_.Of(robot_);
+  runtime::rounds::Contribution contribution;
+  std::vector<Bytes> encoded;
+  encoded.reserve(effects.size());
+  const size_t first =
+      effects.empty() ? 0 : base::Mixed(seed_ ^ base::Mixed(round * 1024 + robot_)) % effects.size();
+  for (size_t i = 0; i < effects.size() && i < runtime::rounds::kMostAlternatives; ++i) {
+    const Effect& effect = effects[(first + i) % effects.size()];
+    if (effect.fault != semantics::Fault::kNone) continue;
+    encoded.emplace_back();
+    EncodeEffect(effect, encoded.back());
+    contribution.alternatives.push_back({effect.event, effect.locks, encoded.back()});
+    if (!effect.locks) break;  // nothing can take it away
+  }
+  std::swap(seen, state_);
+  contribution.inputs = inputs;
+  runtime::rounds::Encode(contribution, out);
+}
+
+// Reads cells and, if there is a state, puts them there.
+bool Node::Reads(View bytes, uint32_t robot, bool inputs, std::vector<Word>* state) const {
+  Reader reader(bytes);
+  const size_t count = reader.Number(bytes.size());
+  std::vector<Word> words;
+  for (size_t i = 0; i < count && reader.ok(); ++i) {
+    words.clear();
+    const Cell cell = cells_.Decode(reader, words);
+    if (!reader.ok() || (cells_.Kind(cell) == VariableKind::kSensor) != inputs) return false;
+    if (state != nullptr) std::ranges::copy(words, state->begin() + cells_.Address(cell, robot));
+  }
+  return reader.Complete();
+}
+
+bool Node::Accepts(uint32_t robot, View inputs, std::span<const Alternative> alternatives) const {
+  if (!Reads(inputs, robot, true, nullptr)) return false;
+  return std::ranges::all_of(alternatives, [&](const Alternative& a) {
+    return a.event <= team_.events().size() && Reads(a.effect, robot, false, nullptr);
+  });
+}
+
+void Node::Apply(uint64_t, std::span<const runtime::rounds::Turn> turns) {
+  for (const auto& turn : turns) Reads(turn.inputs, turn.robot, true, &state_);
+  for (const auto& turn : turns) {
+    if (turn.does != nullptr) Reads(turn.does->effect, turn.robot, false, &state_);
+  }
+  if (team_.heap().words_in_use() < collect_at_) return;
+  const std::span<const Word> states[] = {state_};
+  team_.Collect(states);
+  collect_at_ = std::max<size_t>(1'000'000, 2 * team_.heap().words_in_use());
+}
+
+void Node::Save(Bytes& out) const {
+  Writer writer(out);
+  const auto put = [&](Cell cell, size_t robot) {
+    cells_.EncodeValueOf(cell, std::span(state_).subspan(cells_.Address(cell, robot), cells_.Width(cell)),
+                         writer);
+  };
+  for (const Cell cell : cells_.shared()) put(cell, 0);
+  for (size_t r = 0; r < team_.robots(); ++r) {
+    for (const Cell cell : cells_.own()) put(cell, r);
+  }
+}
+
+bool Node::Load(View bytes) {
+  Reader reader(bytes);
+  std::vector<Word> state = state_;
+  std::vector<Word> words;
+  const auto get = [&](Cell cell, size_t robot) {
+    words.clear();
+    cells_.DecodeValueOf(cell, reader, words);
+    if (reader.ok()) std::ranges::copy(words, state.begin() + cells_.Address(cell, robot));
+  };
+  for (const Cell cell : cells_.shared()) get(cell, 0);
+  for (size_t r = 0; r < team_.robots(); ++r) {
+    for (const Cell cell : cells_.own()) get(cell, r);
+  }
+  if (!reader.Complete()) return false;
+  state_ = std::move(state);
+  return true;
+}
+
+}  // namespace rondo::koord::node

@@ -1,0 +1,175 @@
+#include "koord/node/node.h"
+
+#include <gtest/gtest.h>
+
+#include "koord/node/compiled_test.h"
+#include "runtime/rounds/merge.h"
+
+namespace rondo::koord::node {
+namespace {
+
+using runtime::codec::Bytes;
+using runtime::codec::Reader;
+using runtime::codec::View;
+using runtime::codec::Writer;
+using runtime::rounds::Contribution;
+
+constexpr const char* kProgram = R"(
+using Motion:
+    sensors:
+        float x
+    actuators:
+        float v
+allwrite:
+    int sum = 0
+    List<int> queue
+allread:
+    int count[N_sys]
+local:
+    bool done = false
+
+Add:
+    pre: not done
+    eff:
+        atomic:
+            sum += 1
+            queue.append(pid)
+        count[pid] += 1
+        done = true
+        Motion.v = Motion.x
+)";
+
+class Steady : public Sensors {
+ public:
+  void Read(size_t robot, uint64_t, Cell, std::span<Word> words) override {
+    words[0] = semantics::FromFloat(static_cast<double>(robot) + 0.5);
+  }
+};
+
+// A robot of its own heap for each node, as on machines.
+class NodeTest : public testing::Test {
+ protected:
+  NodeTest() {
+    for (uint32_t r = 0; r < 3; ++r) {
+      teams_.push_back(program_.Team(3));
+      nodes_.push_back(std::make_unique<Node>(*teams_.back(), r, &sensors_, 1));
+    }
+  }
+  void Round(uint64_t round) {
+    std::vector<Bytes> payloads(3);
+    std::vector<Contribution> contributions;
+    for (uint32_t r = 0; r < 3; ++r) nodes_[r]->Contribute(round, payloads[r]);
+    for (const Bytes& payload : payloads) contributions.push_back(*runtime::rounds::Decode(View(payload)));
+    const std::vector<uint32_t> robots{0, 1, 2};
+    for (const auto& node : nodes_) {
+      for (uint32_t r = 0; r < 3; ++r)
+        EXPECT_TRUE(node->Accepts(r, contributions[r].inputs, contributions[r].alternatives));
+      node->Apply(round, runtime::rounds::Merge(round, robots, contributions));
+    }
+  }
+  Bytes Store(size_t robot) {
+    Bytes bytes;
+    nodes_[robot]->Save(bytes);
+    return bytes;
+  }
+  std::string Show(size_t robot, const std::string& name, size_t of = 0) {
+    for (size_t v = 0; v < teams_[robot]->model().variables.size(); ++v) {
+      if (teams_[robot]->model().variables[v].name == name)
+        return teams_[robot]->ShowVariable(nodes_[robot]->state(), v, of);
+    }
+    return "?";
+  }
+
+  Compiled program_{kProgram};
+  Steady sensors_;
+  std::vector<std::unique_ptr<semantics::Team>> teams_;
+  std::vector<std::unique_ptr<Node>> nodes_;
+};
+
+TEST_F(NodeTest, AllHaveTheSameStoreAfterEachRound) {
+  for (uint64_t round = 0; round < 5; ++round) {
+    Round(round);
+    EXPECT_EQ(Store(0), Store(1));
+    EXPECT_EQ(Store(0), Store(2));
+  }
+  EXPECT_EQ(Show(1, "sum"), "3");
+  EXPECT_EQ(Show(2, "done", 0), "true");
+}
+
+TEST_F(NodeTest, OneRobotARoundGetsALock) {
+  Round(0);
+  Round(1);
+  EXPECT_EQ(Show(0, "sum"), "1");
+  EXPECT_EQ(Show(0, "queue"), "[1]");  // the order begins with robot 1 in round 1
+  EXPECT_EQ(Show(0, "count", 1), "1");
+  EXPECT_EQ(Show(0, "count", 0), "0");
+}
+
+TEST_F(NodeTest, SensorsAreInTheStoreAndReadInTheRound) {
+  Round(0);
+  Round(1);
+  EXPECT_EQ(Show(0, "Motion.x", 2), "2.5");
+  EXPECT_EQ(Show(0, "Motion.v", 1), "1.5");
+}
+
+TEST_F(NodeTest, AStoreComesBackInAnotherHeap) {
+  for (uint64_t round = 0; round < 4; ++round) Round(round);
+  const auto team = program_.Team(3);
+  team->heap().Intern(std::vector<Word>{9, 9});  // other handles
+  Node other(*team, 0, nullptr, 1);
+  ASSERT_TRUE(other.Load(Store(0)));
+  Bytes again;
+  other.Save(again);
+  EXPECT_EQ(again, Store(0));
+}
+
+TEST_F(NodeTest, AStoreThatIsCutOrTooLongChangesNothing) {
+  for (uint64_t round = 0; round < 3; ++round) Round(round);
+  const Bytes good = Store(0);
+  const Bytes before = Store(1);
+  for (size_t length = 0; length < good.size(); ++length)
+    EXPECT_FALSE(nodes_[1]->Load(View(good).first(length))) << length;
+  Bytes longer = good;
+  longer.push_back(0);
+  EXPECT_FALSE(nodes_[1]->Load(longer));
+  EXPECT_EQ(Store(1), before);
+}
+
+TEST_F(NodeTest, AFrameWritesNoSensorAndItsInputsNothingElse) {
+  Bytes cells;
+  Writer writer(cells);
+  writer.Number(1);
+  const Cell sensor = nodes_[0]->cells().sensors()[0];
+  const Word half = semantics::FromFloat(0.5);
+  nodes_[0]->cells().Encode(sensor, std::span(&half, 1), writer);
+  const runtime::rounds::Alternative writes_sensor{0, false, cells};
+  EXPECT_TRUE(nodes_[0]->Accepts(1, cells, {}));
+  Bytes none;
+  Writer(none).Number(0);
+  EXPECT_TRUE(nodes_[0]->Accepts(1, none, {}));
+  EXPECT_FALSE(nodes_[0]->Accepts(1, none, std::span(&writes_sensor, 1)));
+  const runtime::rounds::Alternative unknown{77, false, none};
+  EXPECT_FALSE(nodes_[0]->Accepts(1, none, std::span(&unknown, 1)));
+}
+
+TEST_F(NodeTest, ValuesThatAreNoneAreRefused) {
+  const Cells& cells = nodes_[0]->cells();
+  Bytes nan;
+  Writer writer(nan);
+  const Word no_number = semantics::FromFloat(std::numeric_limits<double>::quiet_NaN());
+  cells.Encode(cells.sensors()[0], std::span(&no_number, 1), writer);
+  Reader reader(nan);
+  std::vector<Word> words;
+  cells.Decode(reader, words);
+  EXPECT_FALSE(reader.ok());
+  Bytes nowhere;
+  Writer far(nowhere);
+  far.Number(3);
+  far.Number(12345);
+  Reader missing(nowhere);
+  cells.Decode(missing, words);
+  EXPECT_FALSE(missing.ok());
+}
+
+}  // namespace
+}  // namespace rondo::koord::node

@@ -1,0 +1,41 @@
+#include "runtime/rounds/assembly.h"
+
+#include <algorithm>
+
+namespace rondo::runtime::rounds {
+
+bool Assembly::Add(const codec::Part& part) {
+  if (complete_) return true;
+  if (has_.empty()) {
+    has_.resize(part.count);
+    whole_.resize(size_t{part.count} * codec::kPart);
+    sum_ = part.sum;
+  }
+  if (part.count != has_.size() || part.sum != sum_ || has_[part.index]) return false;
+  std::ranges::copy(part.bytes, whole_.begin() + static_cast<ptrdiff_t>(size_t{part.index} * codec::kPart));
+  if (part.index + 1 == part.count) whole_.resize(size_t{part.index} * codec::kPart + part.bytes.size());
+  has_[part.index] = true;
+  if (++count_ < has_.size()) return false;
+  if (codec::Sum(whole_) != sum_) {
+    Clear();
+    return false;
+  }
+  complete_ = true;
+  return true;
+}
+
+void Assembly::Set(codec::Bytes whole) {
+  whole_ = std::move(whole);
+  complete_ = true;
+}
+
+void Assembly::Missing(uint32_t& from, uint64_t& window) const {
+  from = 0;
+  window = UINT64_MAX;
+  while (from < has_.size() && has_[from]) ++from;
+  for (uint32_t k = 0; k < 64 && from + k < has_.size(); ++k) {
+    if (has_[from + k]) window &= ~(uint64_t{1} << k);
+  }
+}
+
+}  // namespace rondo::runtime::rounds

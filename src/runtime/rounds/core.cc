@@ -1,0 +1,157 @@
+#include "runtime/rounds/core.h"
+
+#include <algorithm>
+
+namespace rondo::runtime::rounds {
+
+namespace {
+
+constexpr Time kNever = INT64_MAX;
+
+}  // namespace
+
+std::string_view Name(Phase phase) {
+  switch (phase) {
+    case Phase::kOutside:
+      return "outside";
+    case Phase::kFetching:
+      return "fetching";
+    case Phase::kStored:
+      return "stored";
+    case Phase::kCommitted:
+      return "committed";
+    case Phase::kCollecting:
+      return "collecting";
+    case Phase::kHalted:
+      return "halted";
+  }
+  return "";
+}
+
+Core::Core(const Settings& settings, Program& program, Disk* disk, std::optional<View> record)
+    : settings_(settings), program_(program), disk_(disk), peers_(settings.robots) {
+  program_.Save(store_);
+  digest_ = codec::Sum(store_);
+  // What cannot be read is forgotten.
+  if (record) Recall(*record);
+}
+
+void Core::Step(Time now, View datagram, std::vector<Output>& outputs) {
+  now_ = std::max(now_, now);
+  outputs_ = &outputs;
+  if (!started_) {
+    started_ = true;
+    Progress();
+    resend_at_ = now_;
+  }
+  EndLease();
+  if (!datagram.empty()) Receive(datagram);
+  Timers();
+  Wake();
+}
+
+void Core::Post(uint32_t to, codec::Body body) {
+  Send send{to, {}};
+  codec::Encode(
+      {settings_.agreement, settings_.session, {settings_.self, settings_.incarnation}, std::move(body)},
+      send.bytes);
+  outputs_->push_back(std::move(send));
+}
+
+void Core::Fail(const char* what) {
+  if (active_) outputs_->push_back(FallBack{});
+  active_ = false;
+  phase_ = Phase::kHalted;
+  outputs_->push_back(Broken{what});
+}
+
+bool Core::Recent(uint32_t robot) const {
+  if (robot == settings_.self) return true;
+  return peers_[robot].heard && now_ - peers_[robot].last <= settings_.patience;
+}
+
+int Core::RankOf(Member member) const {
+  if (!decision_) return -1;
+  const auto& all = decision_->members;
+  const auto it = std::ranges::find(all, member);
+  return it == all.end() ? -1 : static_cast<int>(it - all.begin());
+}
+
+void Core::Receive(View bytes) {
+  codec::Message message;
+  const codec::Refused why =
+      codec::Decode(bytes, settings_.agreement, settings_.session, settings_.robots, message);
+  ++refused_[static_cast<size_t>(why)];
+  if (why != codec::Refused::kNothing || message.sender.robot == settings_.self) return;
+  Peer& peer = peers_[message.sender.robot];
+  if (message.sender.incarnation < peer.incarnation) return;  // from an earlier life
+  if (message.sender.incarnation > peer.incarnation) {
+    peer = Peer();
+    peer.incarnation = message.sender.incarnation;
+  }
+  peer.heard = true;
+  peer.last = now_;
+  std::visit([&](const auto& body) { On(message.sender, body); }, message.body);
+}
+
+void Core::On(Member from, const codec::Status& status) {
+  Peer& peer = peers_[from.robot];
+  // Datagrams overtake each other; nobody goes back.
+  if (status.at > peer.at) {
+    peer.at = status.at;
+    peer.holds = peer.counts = peer.began = false;
+  }
+  if (status.at == peer.at) {
+    peer.holds = peer.holds || status.holds;
+    peer.counts = peer.counts || status.counts;
+  }
+  TryCommit();
+  Serve(from, status);
+}
+
+void Core::On(Member from, const codec::Part& part) {
+  if (!decision_ || part.at.epoch != Epoch() || phase_ == Phase::kHalted) return;
+  if (!part.of) {
+    if (phase_ == Phase::kFetching && part.at == place_ && base_.Add(part)) Enter();
+    return;
+  }
+  const int rank = RankOf(*part.of);
+  if (rank < 0 || rank_ < 0 || part.at != place_ || held_ != place_) return;
+  if (*part.of == from) {
+    // Who begins a round has seen that a majority stores its beginning.
+    Peer& peer = peers_[from.robot];
+    if (part.at > peer.at) peer = {peer.incarnation, true, now_, part.at, false, false, false};
+    if (part.at == peer.at) peer.holds = peer.began = true;
+    TryCommit();
+  }
+  Assembly& frame = frames_[static_cast<size_t>(rank)];
+  if (frame.complete() || !frame.Add(part)) return;
+  const auto contribution = Decode(View(frame.whole()));
+  if (!contribution || !program_.Accepts(part.of->robot, contribution->inputs, contribution->alternatives)) {
+    frame.Clear();
+    ++refused_[static_cast<size_t>(codec::Refused::kMalformed)];
+    return;
+  }
+  TryMerge();
+}
+
+void Core::Timers() {
+  if (phase_ == Phase::kHalted) return;
+  TryCommit();
+  if (phase_ == Phase::kCommitted && now_ >= round_start_ + settings_.delta) Begin();
+  Repeat();
+  TryEpoch();
+}
+
+void Core::Wake() {
+  wake_ = kNever;
+  const auto at = [&](Time time) { wake_ = std::min(wake_, std::max(time, now_ + 1)); };
+  if (active_) at(lease_end_);
+  if (phase_ == Phase::kHalted) return;
+  if (phase_ == Phase::kCommitted) at(round_start_ + settings_.delta);
+  if (phase_ == Phase::kStored && now_ < not_before_) at(not_before_);
+  if (Waits()) at(resend_at_);
+  if (wanted_) at(try_at_);
+}
+
+}  // namespace rondo::runtime::rounds

@@ -1,0 +1,208 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "runtime/rounds/assembly.h"
+#include "runtime/rounds/merge.h"
+#include "runtime/rounds/register.h"
+#include "runtime/rounds/settings.h"
+
+/// The round protocol of one robot, as a deterministic machine: no thread, clock, socket, file or random
+/// number is in it (docs/runtime.md).
+namespace rondo::runtime::rounds {
+
+using codec::Member;
+
+constexpr uint32_t kAll = UINT32_MAX;
+
+/// Asks to send a datagram to a robot, or to `kAll` others.
+struct Send {
+  uint32_t to;
+  Bytes bytes;
+};
+/// Says that actuators and streams get what the store says; no write may take effect after `until`.
+struct Act {
+  Place at;
+  Time until;
+};
+/// Says that the robot no longer acts: its fallback takes over.
+struct FallBack {};
+/// Tells what happened, for records and reports.
+struct Contributed {
+  Place at;
+  Bytes payload;
+};
+struct Stored {
+  Place at;
+  uint64_t digest;
+};
+struct Committed {
+  Place at;
+};
+struct Adopted {
+  Decision decision;
+};
+/// Names what must not happen, and did; the core goes no further.
+struct Broken {
+  const char* what;
+};
+using Output = std::variant<Send, Act, FallBack, Contributed, Stored, Committed, Adopted, Broken>;
+
+/// Keeps records where a crash cannot reach them.
+class Disk {
+ public:
+  virtual ~Disk() = default;
+  /// Puts a record in the place of the one before: after a crash there is the one or the other, as a whole.
+  /// Returns whether it did. Until the next record is kept, the core neither votes nor counts.
+  virtual bool Keep(View record) = 0;
+};
+
+/// Names where a robot is in a round.
+enum class Phase : uint8_t {
+  kOutside,     ///< no epoch has it as a member
+  kFetching,    ///< it lacks the store that its epoch begins with
+  kStored,      ///< it has the store of the round, and waits until a majority has
+  kCommitted,   ///< a majority has; the next round begins when it is time
+  kCollecting,  ///< it said what it does in this round, and waits for the others
+  kHalted,      ///< for ever
+};
+
+/// Returns `outside`, `fetching`, `stored`, `committed`, `collecting` or `halted`.
+std::string_view Name(Phase phase);
+
+/// Runs the protocol for one robot. What it guarantees: no two robots ever commit different stores for one
+/// round of one epoch; a store that some robot committed is never lost to a later epoch, as long as no
+/// majority of the fleet loses its memory at once; a robot acts only on committed stores, and not beyond its
+/// lease. Requires clocks within `drift_ppm` of each other and adapters that keep `stop_time`.
+class Core {
+ public:
+  /// @param program  outlives the core; its store is the one before `init`, or what `record` says.
+  /// @param disk  nullptr: nothing is kept, and a robot does not vote after a crash until an epoch admits it
+  /// and it has the store of that. Else stores and promises are kept before anybody hears of them.
+  /// @param record  what was last kept by an earlier life on the same disk, if there is one.
+  Core(const Settings& settings, Program& program, Disk* disk, std::optional<View> record);
+  Core(const Core&) = delete;
+  Core& operator=(const Core&) = delete;
+
+  /// Takes a datagram, or none (time went on), at a moment that is not before the last one, and appends what
+  /// is to be done, in order.
+  void Step(Time now, View datagram, std::vector<Output>& outputs);
+  /// Returns when to come back, if no datagram comes before.
+  Time wake() const { return wake_; }
+
+  Phase phase() const { return phase_; }
+  Place place() const { return place_; }
+  bool active() const { return active_; }
+  /// Reports whether its vote counts for the next epoch.
+  bool votes() const { return MayVote(Epoch() + 1); }
+  /// Returns how many datagrams were refused, by reason.
+  const std::array<uint64_t, 5>& refused() const { return refused_; }
+
+ private:
+  struct Peer {
+    uint64_t incarnation = 0;
+    bool heard = false;
+    Time last = 0;
+    Place at;
+    bool holds = false, counts = false;
+    bool began = false;  // it committed that store, and has begun the round
+  };
+
+  // core.cc
+  uint64_t Epoch() const { return decision_ ? decision_->epoch : 0; }
+  bool Recent(uint32_t robot) const;
+  int RankOf(Member member) const;
+  void Receive(View bytes);
+  void Wake();
+  void On(Member from, const codec::Status& status);
+  void On(Member from, const codec::Part& part);
+  void On(Member from, const codec::Prepare& prepare);
+  void On(Member from, const codec::Promise& promise);
+  void On(Member from, const codec::Accept& accept);
+  void On(Member from, const codec::Accepted& accepted);
+  void On(Member from, const codec::Refusal& refusal);
+  void On(Member from, const codec::Decided& decided);
+  void Timers();
+  void Post(uint32_t to, codec::Body body);
+  void Fail(const char* what);
+  bool Majority(uint32_t count) const { return count >= settings_.majority(); }
+
+  // round.cc
+  void Begin();
+  void TryMerge();
+  void StoreNow();
+  void TryCommit();
+  void EndLease();
+
+  // resend.cc
+  void Progress();
+  codec::Status MyStatus(bool asks, bool forwards) const;
+  void SendStatus();
+  void Serve(Member from, const codec::Status& status);
+  void SendFrames(uint32_t to, const std::vector<Assembly>& frames, Place at, const codec::Status& status);
+  bool Waits() const;
+  void Repeat();
+
+  // epochs.cc
+  bool MayVote(uint64_t epoch) const;
+  bool Wanted() const;
+  bool MayJoin(uint32_t robot) const;
+  std::vector<Member> Candidates() const;
+  void TryEpoch();
+  void Ask();
+  void Choose();
+  void Vote();
+  void Adopt(const Decision& decision);
+  void Enter();
+  void KeepRecord();
+  void Recall(View record);
+
+  const Settings settings_;
+  Program& program_;
+  Disk* disk_;
+  Time now_ = 0;
+  std::vector<Output>* outputs_ = nullptr;
+  Time wake_ = 0;
+  Phase phase_ = Phase::kOutside;
+  bool started_ = false;
+
+  // The epoch and the round.
+  std::optional<Decision> decision_;       // of the present epoch
+  std::vector<uint32_t> members_;          // robots, in order
+  int rank_ = -1;                          // among the members
+  Place place_;                            // where the protocol is
+  Place held_;                             // the store that the program has
+  Bytes store_;                            // that store
+  uint64_t digest_ = 0;                    // of that
+  std::vector<Assembly> frames_, before_;  // by member: of this round, and of the one before
+  Assembly base_;                          // what is fetched
+  Time round_start_ = 0, first_sent_ = 0;
+  bool asked_in_epoch_ = false;  // a frame of this robot was sent in this epoch
+
+  // Acting.
+  bool active_ = false;
+  Time lease_end_ = 0;
+  Time not_before_ = 0;  // in this epoch nobody acts earlier
+
+  // Others.
+  std::vector<Peer> peers_;
+  Time resend_at_ = 0, interval_ = 0;
+  uint32_t attempt_ = 0;  // repetitions since the last progress
+  Time progress_at_ = 0;
+
+  // Epochs.
+  Voter voter_;
+  bool votes_ = false;  // it was admitted, and has lost nothing that it promised or stored since
+  bool disk_failed_ = false;
+  std::optional<Attempt> trial_;  // to decide the next epoch
+  uint64_t highest_ballot_ = 0;
+  Time try_at_ = 0;
+  bool wanted_ = false;
+
+  std::array<uint64_t, 5> refused_{};
+};
+
+}  // namespace rondo::runtime::rounds

@@ -1,0 +1,155 @@
+#include "sim/campaign/campaign.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "base/file.h"
+#include "koord/node/compiled_test.h"
+
+namespace rondo::sim::campaign {
+namespace {
+
+using history::Wrong;
+using runtime::rounds::OnLoss;
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr uint64_t kRuns = 150;
+#else
+constexpr uint64_t kRuns = 3000;
+#endif
+
+uint64_t Runs() {
+  const char* cases = std::getenv("RONDO_CASES");
+  return cases == nullptr ? kRuns : std::strtoull(cases, nullptr, 10) / 10;
+}
+
+class CampaignTest : public testing::Test {
+ protected:
+  CampaignTest() : program_(base::ReadFile("src/sim/campaign/testdata/fleet.koord").value()) {}
+  Fleet::MakeTeam Make() {
+    return [this](size_t robots) { return program_.Team(robots); };
+  }
+  // A run without faults.
+  Outcome Calm(size_t robots, OnLoss on_loss = OnLoss::kWait) {
+    Scenario scenario;
+    scenario.robots = robots;
+    scenario.on_loss = on_loss;
+    scenario.rounds = 12;
+    return fleet_.Run(scenario);
+  }
+  std::vector<history::Finding> Judged(const history::Record& record) {
+    const auto team = program_.Team(record.robots);
+    return history::Judge(*team).Check(record);
+  }
+
+  koord::node::Compiled program_;
+  Fleet fleet_{Make()};
+};
+
+TEST_F(CampaignTest, FindsNothing) {
+  CampaignOptions options;
+  options.runs = Runs();
+  const CampaignReport report = Search(fleet_, Make(), options);
+  EXPECT_FALSE(report.failure.has_value()) << Story(*report.failure);
+  EXPECT_EQ(report.runs, options.runs);
+  EXPECT_GT(report.rounds, 10 * options.runs);
+}
+
+// With a session that everybody begins anew, 12 rounds of 100 ms take so long and no longer.
+TEST_F(CampaignTest, ACalmFleetKeepsTheTime) {
+  for (size_t robots = 1; robots <= 5; ++robots) {
+    const Outcome outcome = Calm(robots);
+    EXPECT_GE(outcome.rounds, 12U);
+    EXPECT_LT(outcome.time, 1'500'000'000) << robots;
+    EXPECT_EQ(Judged(outcome.record).size(), 0U) << robots;
+    EXPECT_TRUE(outcome.stuck.empty()) << outcome.stuck;
+  }
+}
+
+TEST_F(CampaignTest, APartitionHaltsWaitsOrEvicts) {
+  for (const OnLoss on_loss : {OnLoss::kHalt, OnLoss::kWait, OnLoss::kEvict}) {
+    Scenario scenario;
+    scenario.robots = 3;
+    scenario.on_loss = on_loss;
+    scenario.rounds = 40;
+    scenario.faults = {{FaultKind::kAlone, 1'000'000'000, 2'000'000'000, 2, 0, 0}};
+    const Outcome outcome = fleet_.Run(scenario);
+    EXPECT_EQ(Judged(outcome.record).size(), 0U);
+    EXPECT_EQ(outcome.stuck, "");
+    size_t fallbacks = 0, acted_meanwhile = 0;
+    for (const history::Entry& e : outcome.record.entries) {
+      fallbacks += e.kind == history::Kind::kFellBack ? 1 : 0;
+      acted_meanwhile +=
+          e.kind == history::Kind::kActed && e.time > 1'600'000'000 && e.time < 3'000'000'000 ? 1 : 0;
+    }
+    EXPECT_GE(fallbacks, on_loss == OnLoss::kEvict ? 1U : 3U);
+    if (on_loss == OnLoss::kEvict)
+      EXPECT_GT(acted_meanwhile, 0U);
+    else
+      EXPECT_EQ(acted_meanwhile, 0U);
+    if (on_loss == OnLoss::kHalt)
+      EXPECT_LT(outcome.rounds, 15U);
+    else
+      EXPECT_GE(outcome.rounds, 40U);
+  }
+}
+
+// The judge knows nothing of the protocol; it sees what is planted into a good record.
+TEST_F(CampaignTest, TheJudgeSeesWhatIsPlanted) {
+  const Outcome good = Calm(3);
+  ASSERT_EQ(Judged(good.record).size(), 0U);
+  const auto planted = [&](const std::function<void(history::Record&, history::Entry&)>& plant,
+                           history::Kind kind, uint64_t round) {
+    history::Record record = good.record;
+    for (history::Entry& entry : record.entries) {
+      if (entry.kind != kind || entry.round != round) continue;
+      plant(record, entry);
+      break;
+    }
+    std::set<Wrong> wrong;
+    for (const auto& finding : Judged(record)) wrong.insert(finding.wrong);
+    return wrong;
+  };
+  using history::Entry;
+  using history::Kind;
+  using history::Record;
+  EXPECT_TRUE(planted([](Record& r, Entry& e) { r.images[e.what].back() ^= 1; }, Kind::kStored, 5)
+                  .contains(Wrong::kNoRound));
+  EXPECT_TRUE(planted([](Record&, Entry& e) { e.what = 0; }, Kind::kStored, 5).size() > 0);
+  EXPECT_TRUE(planted(
+                  [](Record& r, Entry& e) {
+                    for (Entry& other : r.entries) {
+                      if (other.kind == Kind::kStored && other.round == e.round) other.kind = Kind::kStarted;
+                    }
+                  },
+                  Kind::kActed, 5)
+                  .contains(Wrong::kTooEarly));
+  EXPECT_TRUE(
+      planted([](Record&, Entry& e) { e.time = e.until + 1; }, Kind::kActed, 5).contains(Wrong::kTooLate));
+  EXPECT_TRUE(
+      planted([](Record&, Entry& e) { e.until += 100'000'000; }, Kind::kActed, 5).contains(Wrong::kTooLate));
+  EXPECT_TRUE(
+      planted([](Record&, Entry& e) { ++e.incarnation; }, Kind::kActed, 5).contains(Wrong::kTwoTeams));
+  EXPECT_TRUE(
+      planted([](Record&, Entry& e) { e.round = 3; }, Kind::kContributed, 8).contains(Wrong::kWithdrawn));
+  EXPECT_TRUE(planted([](Record& r, Entry& e) { r.members[e.what].pop_back(); }, Kind::kAdopted, 0)
+                  .contains(Wrong::kDiverged));
+  EXPECT_TRUE(
+      planted([](Record&, Entry& e) { e.robot = 77; }, Kind::kStored, 5).contains(Wrong::kUnreadable));
+  EXPECT_TRUE(planted([](Record& r, Entry& e) { r.images[e.what].pop_back(); }, Kind::kStored, 5)
+                  .contains(Wrong::kUnreadable));
+}
+
+TEST_F(CampaignTest, TheSameScenarioIsTheSameRun) {
+  for (uint64_t seed = 1; seed < 20; ++seed) {
+    const Scenario scenario = Draw(seed, 2, 5);
+    const Outcome one = fleet_.Run(scenario);
+    Fleet other(Make());
+    EXPECT_EQ(one.digest, other.Run(scenario).digest) << seed;
+  }
+  EXPECT_NE(fleet_.Run(Draw(1, 3, 3)).digest, fleet_.Run(Draw(2, 3, 3)).digest);
+}
+
+}  // namespace
+}  // namespace rondo::sim::campaign

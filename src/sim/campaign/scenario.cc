@@ -1,0 +1,97 @@
+#include "sim/campaign/scenario.h"
+
+#include <fmt/format.h>
+
+#include <random>
+
+namespace rondo::sim::campaign {
+
+using runtime::rounds::OnLoss;
+
+std::string_view Name(FaultKind kind) {
+  switch (kind) {
+    case FaultKind::kLoss:
+      return "loss";
+    case FaultKind::kDelay:
+      return "delay";
+    case FaultKind::kDuplicate:
+      return "duplicate";
+    case FaultKind::kCorrupt:
+      return "corrupt";
+    case FaultKind::kOneWay:
+      return "one-way";
+    case FaultKind::kCut:
+      return "cut";
+    case FaultKind::kAlone:
+      return "alone";
+    case FaultKind::kCrash:
+      return "crash";
+    case FaultKind::kForget:
+      return "forget";
+    case FaultKind::kPause:
+      return "pause";
+    case FaultKind::kDiskFull:
+      return "disk-full";
+  }
+  return "";
+}
+
+std::string Tell(const Fault& f) {
+  const auto what = [&]() -> std::string {
+    switch (f.kind) {
+      case FaultKind::kLoss:
+        return fmt::format("{:.0f} % of all datagrams are lost", 100 * f.amount);
+      case FaultKind::kDelay:
+        return fmt::format("datagrams take up to {:.3g} s", f.amount);
+      case FaultKind::kDuplicate:
+        return fmt::format("{:.0f} % of all datagrams come twice", 100 * f.amount);
+      case FaultKind::kCorrupt:
+        return fmt::format("{:.0f} % of all datagrams are damaged", 100 * f.amount);
+      case FaultKind::kOneWay:
+        return fmt::format("nothing comes from robot {} to robot {}", f.robot, f.other);
+      case FaultKind::kCut:
+        return fmt::format("robots {} and {} do not hear each other", f.robot, f.other);
+      case FaultKind::kAlone:
+        return fmt::format("robot {} hears nobody and is not heard", f.robot);
+      case FaultKind::kCrash:
+        return fmt::format("robot {} is gone, and comes back with its disk", f.robot);
+      case FaultKind::kForget:
+        return fmt::format("robot {} is gone, and comes back without its disk", f.robot);
+      case FaultKind::kPause:
+        return fmt::format("robot {} stands still", f.robot);
+      case FaultKind::kDiskFull:
+        return fmt::format("the disk of robot {} is full", f.robot);
+    }
+    return "";
+  };
+  return fmt::format("from {:.3f} s on, for {:.3f} s: {}", static_cast<double>(f.at) * 1e-9,
+                     static_cast<double>(f.length) * 1e-9, what());
+}
+
+Scenario Draw(uint64_t seed, size_t least, size_t most) {
+  // Not the numbers that the network draws.
+  std::mt19937_64 random(seed * 0x9e3779b97f4a7c15 + 0x5ce0a210);
+  const auto below = [&](uint64_t n) { return random() % n; };
+  Scenario s;
+  s.seed = seed;
+  s.robots = least + below(most - least + 1);
+  // With two robots there is no majority without the other.
+  s.on_loss = static_cast<OnLoss>(below(s.robots == 2 ? 2 : 3));
+  s.disks = below(2) == 0;
+  const Time time = s.delta * static_cast<Time>(s.rounds) * 2 / 3;
+  const size_t count = below(9);
+  for (size_t i = 0; i < count; ++i) {
+    Fault f;
+    f.kind = static_cast<FaultKind>(below(static_cast<uint64_t>(FaultKind::kDiskFull) + 1));
+    f.at = static_cast<Time>(below(static_cast<uint64_t>(time)));
+    f.length = static_cast<Time>(10'000'000 + below(below(2) == 0 ? 200'000'000 : 2'000'000'000));
+    f.robot = static_cast<uint32_t>(below(s.robots));
+    f.other = s.robots == 1 ? 0 : static_cast<uint32_t>((f.robot + 1 + below(s.robots - 1)) % s.robots);
+    f.amount = static_cast<double>(below(50) + 1) / 100;
+    if (f.kind == FaultKind::kDelay) f.amount /= below(2) == 0 ? 1 : 10;
+    s.faults.push_back(f);
+  }
+  return s;
+}
+
+}  // namespace rondo::sim::campaign

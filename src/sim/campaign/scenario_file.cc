@@ -1,0 +1,119 @@
+#include "sim/campaign/scenario_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "sim/fleet/tables.h"
+
+namespace rondo::sim::campaign {
+
+using runtime::rounds::OnLoss;
+
+namespace {
+
+Time Nanoseconds(double seconds) { return static_cast<Time>(std::llround(seconds * 1e9)); }
+std::string Seconds(Time time) { return fmt::format("{:.9f}", static_cast<double>(time) * 1e-9); }
+
+std::vector<std::string> Kinds() {
+  std::vector<std::string> names;
+  for (size_t k = 0; k <= static_cast<size_t>(FaultKind::kDiskFull); ++k)
+    names.emplace_back(Name(static_cast<FaultKind>(k)));
+  return names;
+}
+
+class Reader : Tables {
+ public:
+  Reader(const diag::SourceSet& sources, diag::FileId file, diag::Diagnostics& diagnostics)
+      : Tables(sources, file, diagnostics), file_(file), diagnostics_(diagnostics) {}
+
+  std::vector<Scenario> Run() {
+    const size_t before = diagnostics_.errors();
+    const toml::table root = Root();
+    if (diagnostics_.errors() != before) return {};
+    Known(root, {"scenario"}, "a file of scenarios");
+    ForEach(root, "scenario", [&](const toml::table& t) { scenarios_.push_back(Read(t)); });
+    if (scenarios_.empty() && diagnostics_.errors() == before)
+      diagnostics_.Report(diag::Kind::kFleetValue, {file_, 0, 1}, "there is no scenario")
+          .Help("add one: `[[scenario]]`");
+    return std::move(scenarios_);
+  }
+
+ private:
+  Scenario Read(const toml::table& t) {
+    Known(
+        t,
+        {"seed", "robots", "rounds", "on_loss", "disks", "delta", "lease", "stop_time", "patience", "fault"},
+        "a scenario");
+    Scenario s;
+    s.seed = Whole(t, "seed", 1, 0, 9e15);
+    s.robots = Whole(t, "robots", 3, 1, static_cast<double>(kMostRobots));
+    s.rounds = Whole(t, "rounds", 30, 1, 1e6);
+    const std::string on_loss = Word(t, "on_loss", "wait", {"halt", "wait", "evict"});
+    s.on_loss = on_loss == "halt" ? OnLoss::kHalt : on_loss == "evict" ? OnLoss::kEvict : OnLoss::kWait;
+    if (s.on_loss == OnLoss::kEvict && s.robots == 2 && t.get("on_loss") != nullptr)
+      Wrong(At(*t.get("on_loss")), "two robots have no majority without each other, so none can be evicted");
+    s.disks = Flag(t, "disks", false);
+    const auto seconds = [&](const char* name, Time usual) {
+      return Nanoseconds(Number(t, name, static_cast<double>(usual) * 1e-9, 1e-3, 1e4));
+    };
+    s.delta = seconds("delta", s.delta);
+    s.lease = seconds("lease", s.lease);
+    s.stop_time = seconds("stop_time", s.stop_time);
+    s.patience = seconds("patience", s.patience);
+    if (s.patience < 2 * s.delta && (t.get("patience") != nullptr || t.get("delta") != nullptr))
+      Wrong(At(t), "`patience` must be at least two rounds (`delta`): robots are silent between rounds");
+    ForEach(t, "fault", [&](const toml::table& fault) { s.faults.push_back(ReadFault(fault, s)); });
+    return s;
+  }
+
+  Fault ReadFault(const toml::table& t, const Scenario& s) {
+    Known(t, {"kind", "at", "length", "robot", "other", "amount"}, "a fault");
+    Fault f;
+    const std::vector<std::string> kinds = Kinds();
+    if (t.get("kind") == nullptr) Wrong(At(t), "the fault has no `kind`");
+    const std::string kind = Word(t, "kind", kinds[0], kinds);
+    f.kind = static_cast<FaultKind>(std::ranges::find(kinds, kind) - kinds.begin());
+    f.at = Nanoseconds(Number(t, "at", 0, 0, 1e6));
+    f.length = Nanoseconds(Number(t, "length", 0.1, 0, 1e6));
+    const double last = static_cast<double>(s.robots) - 1;
+    f.robot = static_cast<uint32_t>(Whole(t, "robot", 0, 0, last));
+    f.other = static_cast<uint32_t>(Whole(t, "other", 0, 0, last));
+    f.amount = Number(t, "amount", 0, 0, f.kind == FaultKind::kDelay ? 1000 : 1);
+    return f;
+  }
+
+  static constexpr size_t kMostRobots = 64;
+
+  diag::FileId file_;
+  diag::Diagnostics& diagnostics_;
+  std::vector<Scenario> scenarios_;
+};
+
+}  // namespace
+
+std::vector<Scenario> ReadScenarios(const diag::SourceSet& sources, diag::FileId file,
+                                    diag::Diagnostics& diagnostics) {
+  return Reader(sources, file, diagnostics).Run();
+}
+
+std::string WriteScenario(const Scenario& s, const std::string& comment) {
+  std::string text;
+  std::istringstream lines(comment);
+  for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
+  const char* policy = s.on_loss == OnLoss::kHalt ? "halt" : s.on_loss == OnLoss::kWait ? "wait" : "evict";
+  text += fmt::format(
+      "[[scenario]]\nseed = {}\nrobots = {}\nrounds = {}\non_loss = \"{}\"\ndisks = {}\ndelta = {}\nlease = {}\n"
+      "stop_time = {}\npatience = {}\n",
+      s.seed, s.robots, s.rounds, policy, s.disks, Seconds(s.delta), Seconds(s.lease), Seconds(s.stop_time),
+      Seconds(s.patience));
+  for (const Fault& f : s.faults) {
+    text += fmt::format(
+        "\n[[scenario.fault]]\nkind = \"{}\"\nat = {}\nlength = {}\nrobot = {}\nother = {}\namount = {:.17g}\n",
+        Name(f.kind), Seconds(f.at), Seconds(f.length), f.robot, f.other, f.amount);
+  }
+  return text;
+}
+
+}  // namespace rondo::sim::campaign

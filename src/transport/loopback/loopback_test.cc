@@ -1,0 +1,102 @@
+#include "transport/loopback/loopback.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <thread>
+
+namespace rondo::transport::loopback {
+namespace {
+
+using namespace runtime::rounds;  // NOLINT: the words of the protocol
+
+constexpr Time kSecond = 1'000'000'000;
+
+TEST(Loopback, CarriesDatagramsToWhomTheyAreFor) {
+  Hub hub(3);
+  const auto a = hub.Connect(0), b = hub.Connect(1), c = hub.Connect(2);
+  a->Send(1, Bytes{1});
+  a->Send(kAll, Bytes{2});
+  EXPECT_EQ(b->Receive(b->Now() + kSecond), Bytes{1});
+  EXPECT_EQ(b->Receive(b->Now() + kSecond), Bytes{2});
+  EXPECT_EQ(c->Receive(c->Now() + kSecond), Bytes{2});
+  EXPECT_EQ(a->Receive(a->Now()), std::nullopt);
+  EXPECT_EQ(c->Receive(c->Now() - kSecond), std::nullopt);
+}
+
+TEST(Loopback, TheOldestGiveWay) {
+  Hub hub(2, 3);
+  const auto a = hub.Connect(0), b = hub.Connect(1);
+  for (uint8_t i = 0; i < 5; ++i) a->Send(1, Bytes{i});
+  for (uint8_t i = 2; i < 5; ++i) EXPECT_EQ(b->Receive(b->Now()), Bytes{i});
+  EXPECT_EQ(b->Receive(b->Now()), std::nullopt);
+}
+
+// A store that is a number: everybody adds to it.
+class Adder : public Program {
+ public:
+  explicit Adder(uint32_t robot) : robot_(robot) {}
+  void Contribute(uint64_t, Bytes& out) override {
+    const Bytes effect{static_cast<uint8_t>(robot_ + 1)};
+    Encode(Contribution{{}, {{0, false, effect}}}, out);
+  }
+  bool Accepts(uint32_t, View, std::span<const Alternative> all) const override {
+    return all.size() == 1 && all[0].effect.size() == 1;
+  }
+  void Apply(uint64_t, std::span<const Turn> turns) override {
+    for (const Turn& turn : turns) sum_ += turn.does->effect[0];
+  }
+  void Save(Bytes& out) const override { runtime::codec::Writer(out).Number(sum_); }
+  bool Load(View bytes) override {
+    runtime::codec::Reader reader(bytes);
+    const uint64_t sum = reader.Number();
+    if (reader.Complete()) sum_ = sum;
+    return reader.Complete();
+  }
+  uint64_t sum() const { return sum_; }
+
+ private:
+  uint32_t robot_;
+  uint64_t sum_ = 0;
+};
+
+// Threads, a real clock: all act on the same stores, one round after the other.
+TEST(Drive, AFleetOfThreadsAgrees) {
+  constexpr uint32_t kRobots = 4;
+  constexpr uint64_t kRounds = 10;
+  Hub hub(kRobots);
+  base::StopToken stop;
+  std::mutex mutex;
+  std::map<uint64_t, std::set<uint64_t>> acted;  // by round: sums
+  std::vector<uint64_t> last(kRobots);
+  std::vector<std::thread> threads;
+  for (uint32_t r = 0; r < kRobots; ++r) {
+    threads.emplace_back([&, r] {
+      Settings settings;
+      settings.self = r;
+      settings.robots = kRobots;
+      settings.on_loss = OnLoss::kWait;
+      settings.delta = 2'000'000;
+      settings.lease = settings.patience = 5 * kSecond;
+      Adder adder(r);
+      Core core(settings, adder, nullptr, std::nullopt);
+      const auto way = hub.Connect(r);
+      Drive(core, *way, stop, [&](Time, const Output& output) {
+        const auto* act = std::get_if<Act>(&output);
+        if (act == nullptr) return;
+        const std::lock_guard lock(mutex);
+        acted[act->at.round].insert(adder.sum());
+        last[r] = act->at.round;
+        if (std::ranges::all_of(last, [](uint64_t round) { return round >= kRounds; })) stop.RequestStop();
+      });
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_GE(acted.size(), kRounds);
+  for (const auto& [round, sums] : acted) EXPECT_EQ(sums, std::set<uint64_t>{10 * round}) << round;
+}
+
+}  // namespace
+}  // namespace rondo::transport::loopback

@@ -1,0 +1,30 @@
+#include "transport/transport.h"
+
+#include <algorithm>
+
+namespace rondo::transport {
+
+using runtime::codec::View;
+using runtime::rounds::Output;
+using runtime::rounds::Time;
+
+void Drive(runtime::rounds::Core& core, Transport& transport, const base::StopToken& stop,
+           const std::function<void(Time, const Output&)>& observe) {
+  constexpr Time kLook = 50'000'000;
+  std::vector<Output> outputs;
+  std::optional<runtime::codec::Bytes> datagram;
+  while (!stop.StopRequested()) {
+    const Time now = transport.Now();
+    outputs.clear();
+    core.Step(now, datagram ? View(*datagram) : View(), outputs);
+    for (const Output& output : outputs) {
+      if (const auto* send = std::get_if<runtime::rounds::Send>(&output))
+        transport.Send(send->to, send->bytes);
+      else
+        observe(now, output);
+    }
+    datagram = transport.Receive(std::min(core.wake(), now + kLook));
+  }
+}
+
+}  // namespace rondo::transport
