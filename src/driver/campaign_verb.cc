@@ -74,6 +74,7 @@ nlohmann::json ToJson(const campaign::CampaignReport& report, double seconds) {
                       {"datagrams", report.datagrams},
                       {"virtual_seconds", report.seconds},
                       {"seconds", seconds},
+                      {"longest_recovery", static_cast<double>(report.recovery) * 1e-9},
                       {"steps_of_cores", steps},
                       {"failure", nullptr}};
   if (!report.failure) return json;

@@ -118,7 +118,8 @@ void Core::On(Member from, const codec::Part& part) {
   const int rank = RankOf(*part.of);
   if (rank < 0 || rank_ < 0 || part.at != place_ || held_ != place_) return;
   if (*part.of == from) {
-    // Who begins a round has seen that a majority stores its beginning.
+    // Who begins a round has seen that a majority stores its beginning, and has waited for the leases of others.
+    not_before_ = std::min(not_before_, now_);
     Peer& peer = peers_[from.robot];
     if (part.at > peer.at) peer = {peer.incarnation, true, now_, part.at, false, false, false};
     if (part.at == peer.at) peer.holds = peer.began = true;

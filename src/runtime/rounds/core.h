@@ -150,6 +150,7 @@ class Core {
   bool MayVote(uint64_t epoch) const;
   bool Wanted() const;
   bool MayJoin(uint32_t robot) const;
+  Time Silence() const;
   std::vector<Member> Candidates() const;
   void TryEpoch();
   void Ask();

@@ -24,23 +24,31 @@ bool Core::MayJoin(uint32_t robot) const {
   return Recent(robot) && peer.at.epoch == Epoch() && RankOf({robot, peer.incarnation}) < 0;
 }
 
+// How long nothing has gone on, though it could have.
+Time Core::Silence() const { return now_ - std::max(progress_at_, not_before_); }
+
 std::vector<Member> Core::Candidates() const {
   std::vector<Member> all;
-  // Who is heard but does not come along cannot hear us.
-  const bool long_stuck = phase_ == Phase::kCollecting && now_ - progress_at_ >= 2 * settings_.patience;
+  const bool collecting = phase_ == Phase::kCollecting;
   for (uint32_t r = 0; r < settings_.robots; ++r) {
     const Member member{r, r == settings_.self ? settings_.incarnation : peers_[r].incarnation};
     const int rank = RankOf(member);
-    if (!Recent(r) || (decision_ && rank < 0 && !MayJoin(r))) continue;
-    if (long_stuck && rank >= 0 && !frames_[static_cast<size_t>(rank)].complete()) continue;
-    all.push_back(member);
+    if (rank < 0) {
+      if (decision_ ? MayJoin(r) : Recent(r)) all.push_back(member);
+      continue;
+    }
+    // Who said what it does is there, be it that others forwarded it. Who is heard and does not say it for long cannot
+    // hear us.
+    const bool said = collecting && frames_[static_cast<size_t>(rank)].complete();
+    const bool slow = collecting && !said && Silence() >= 2 * settings_.patience;
+    if (said || (Recent(r) && !slow)) all.push_back(member);
   }
   return all;
 }
 
 bool Core::Wanted() const {
   if (!MayVote(Epoch() + 1)) return false;
-  const bool silent = now_ - progress_at_ >= settings_.patience;
+  const bool silent = Silence() >= settings_.patience;
   bool reason = !decision_ || (voter_.promised && silent);
   if (decision_ && settings_.on_loss == OnLoss::kHalt) return false;
   for (uint32_t r = 0; decision_ && r < settings_.robots; ++r) reason = reason || MayJoin(r);
@@ -60,7 +68,7 @@ void Core::TryEpoch() {
     return;
   }
   // One after the other, so that attempts do not stop each other for ever.
-  const Time turn = 4 * settings_.resend;
+  const Time turn = 2 * settings_.resend;
   const auto order = static_cast<Time>((settings_.self + Epoch()) % settings_.robots);
   if (!wanted_) {
     wanted_ = true;

@@ -24,7 +24,8 @@ codec::Status Core::MyStatus(bool asks, bool forwards) const {
   status.forwards = forwards;
   if (!status.holds) {
     base_.Missing(status.from, status.window);
-  } else if (phase_ == Phase::kCollecting) {
+  } else if (phase_ == Phase::kCollecting || attempt_ > 0) {
+    // Before it has begun, too: the frames of others say that it may.
     for (size_t k = frames_.size(); k-- > 0;) {
       if (frames_[k].complete()) continue;
       status.lacks.Add(k);
@@ -46,7 +47,7 @@ void Core::SendStatus() {
 void Core::Repeat() {
   if (!Waits() || now_ < resend_at_) return;
   ++attempt_;
-  interval_ = std::min(2 * interval_, std::max(settings_.resend, settings_.patience / 8));
+  interval_ = std::min(2 * interval_, std::max(settings_.resend, settings_.patience / 16));
   resend_at_ = now_ + interval_;
   if (disk_failed_) KeepRecord();
   SendStatus();

@@ -22,6 +22,7 @@ std::optional<Failure> Try(Fleet& fleet, koord::semantics::Team& team, const Sce
     ++report->runs;
     report->rounds += judge.rounds();
     report->datagrams += outcome.datagrams;
+    report->recovery = std::max(report->recovery, outcome.recovery);
     report->seconds += static_cast<double>(outcome.time) * 1e-9;
     report->visited.insert(outcome.visited.begin(), outcome.visited.end());
   }

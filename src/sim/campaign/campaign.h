@@ -41,6 +41,7 @@ struct Failure {
 struct CampaignReport {
   uint64_t runs = 0, rounds = 0, datagrams = 0;
   double seconds = 0;              ///< virtual
+  Time recovery = 0;               ///< the longest of all runs, as in `Outcome`
   std::set<uint64_t> visited;      ///< as in `Outcome`
   std::optional<Failure> failure;  ///< the first, as short as it could be made
   bool stopped = false;

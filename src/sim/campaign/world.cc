@@ -342,9 +342,9 @@ class World {
 
   // -- the end
 
-  // When everything has to go on again after the last fault: others are given up, leases end, and that perhaps
-  // twice, before three rounds.
-  Time Deadline() const { return quiet_ + 3 * (s_.lease + s_.stop_time + s_.patience) + 6 * s_.delta; }
+  // When everything has to have gone on for three rounds again after the last fault: the leases of those who were
+  // given up last have to end before.
+  Time Deadline() const { return quiet_ + s_.lease + s_.stop_time + 3 * s_.delta; }
 
   bool Over() {
     if (!out_.broken.empty() || forgotten_) return true;
@@ -356,6 +356,7 @@ class World {
     const uint64_t goal = std::max(base_ + 3, s_.rounds);
     uint64_t least = UINT64_MAX;
     for (const Robot& robot : robots_) least = std::min(least, robot.committed);
+    if (least >= base_ + 3 && out_.recovery == 0) out_.recovery = now_ - quiet_;
     if (least >= goal) return true;
     if (least >= base_ + 3 || now_ <= Deadline()) return false;
     size_t voters = 0;

@@ -20,6 +20,8 @@ struct Outcome {
   uint64_t datagrams = 0;  ///< sent, each receiver counted
   uint64_t bytes = 0;
   Time time = 0;  ///< virtual, at the end
+  /// From the end of the last fault until three more rounds were committed by all; 0 if they were not.
+  Time recovery = 0;
   /// Says what should have gone on and did not, after all faults were over; empty if everything did.
   std::string stuck;
   /// Says what a core itself found broken.
