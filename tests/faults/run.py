@@ -55,7 +55,7 @@ def woven(fault):
     return f"({switch} ? ({new}) : ({old}))"
 
 
-def check(faults):
+def check(areas, faults):
     problems = []
     names = [f["name"] for f in faults]
     problems += [f"{n}: the name occurs twice" for n in set(names) if names.count(n) > 1]
@@ -64,7 +64,16 @@ def check(faults):
         count = text.count(fault["old"].strip("\n"))
         if count != 1:
             problems.append(f"{fault['name']}: its text occurs {count} times in {fault['file']}")
+    # The unit tests of a component are one program, named after its folder.
+    units = {"rondo_" + "_".join(path.parent.relative_to(ROOT / "src").parts) + "_test" for path in ROOT.glob("src/**/*_test.cc")}
+    problems += [f"{name}: there is no such program" for name in programs(areas, faults) if name.startswith("rondo_") and name not in units]
     return problems
+
+
+def programs(areas, faults):
+    """The test programs that are named, beside `rondo` itself."""
+    tests = [t for ts in areas.values() for t in ts] + [t for f in faults for t in f.get("tests", [])]
+    return sorted({t.partition(":")[0] for t in tests} - {"golden", "e2e"})
 
 
 def weave(faults):
@@ -98,12 +107,10 @@ def weave(faults):
 
 
 def build(areas, faults):
-    tests = [t for ts in areas.values() for t in ts] + [t for f in faults for t in f.get("tests", [])]
-    programs = sorted({t.partition(":")[0] for t in tests} - {"golden", "e2e"})
     if not (BINARY / "build.ninja").is_file():
         subprocess.run(["cmake", "-G", "Ninja", "-S", str(SOURCE), "-B", str(BINARY), "-DCMAKE_BUILD_TYPE=None",
                         f"-DCMAKE_CXX_FLAGS={FLAGS}", "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"], check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", str(BINARY), "--target", "rondo", *programs], check=True)
+    subprocess.run(["cmake", "--build", str(BINARY), "--target", "rondo", *programs(areas, faults)], check=True)
 
 
 def command(test):
@@ -132,7 +139,7 @@ def passes(test, fault=None):
 
 def main():
     areas, faults = load()
-    problems = check(faults)
+    problems = check(areas, faults)
     for problem in problems:
         print(problem)
     if problems or "--check" in sys.argv:

@@ -92,6 +92,7 @@ void Node::Contribute(uint64_t round, Bytes& out) {
 
 // Reads cells and, if there is a state, puts them there.
 bool Node::Reads(View bytes, uint32_t robot, bool inputs, std::vector<Word>* state) const {
+  if (bytes.empty()) return inputs;  // nothing new
   Reader reader(bytes);
   const size_t count = reader.Number(bytes.size());
   std::vector<Word> words;

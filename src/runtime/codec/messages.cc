@@ -16,12 +16,12 @@ void Write(Writer& w, Member m) {
 Member ReadMember(Reader& r, size_t robots) {
   Member m;
   m.robot = static_cast<uint32_t>(r.Number(robots - 1));
-  m.incarnation = r.Number();
+  m.incarnation = r.Number(kMostNumber);
   return m;
 }
 // Of what is decided: the first epoch is 1.
 uint64_t ReadEpoch(Reader& r) {
-  const uint64_t epoch = r.Number();
+  const uint64_t epoch = r.Number(kMostNumber);
   if (epoch == 0) r.Fail();
   return epoch;
 }
@@ -169,19 +169,21 @@ void Write(Writer& w, Place place) {
 }
 Place ReadPlace(Reader& r) {
   Place place;
-  place.epoch = r.Number();
-  place.round = r.Number();
+  place.epoch = r.Number(kMostNumber);
+  place.round = r.Number(kMostNumber);
   return place;
 }
 
 void Write(Writer& w, Ballot ballot) {
   w.Number(ballot.number);
   w.Number(ballot.robot);
+  w.Number(ballot.incarnation);
 }
 Ballot ReadBallot(Reader& r, size_t robots) {
   Ballot ballot;
-  ballot.number = r.Number();
+  ballot.number = r.Number(kMostNumber);
   ballot.robot = static_cast<uint32_t>(r.Number(robots - 1));
+  ballot.incarnation = r.Number(kMostNumber);
   return ballot;
 }
 
@@ -194,7 +196,7 @@ void Write(Writer& w, const Decision& d) {
 }
 Decision ReadDecision(Reader& r, size_t robots) {
   Decision d;
-  d.epoch = r.Number();
+  d.epoch = r.Number(kMostNumber);
   const size_t count = r.Number(robots);
   for (size_t i = 0; i < count && r.ok(); ++i) {
     d.members.push_back(ReadMember(r, robots));

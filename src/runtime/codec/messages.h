@@ -13,6 +13,8 @@ constexpr size_t kMostRobots = 256;
 constexpr size_t kMostPayload = size_t{64} << 20;  ///< bytes of a frame or a store
 constexpr size_t kPart = 1000;                     ///< bytes of a payload that travel in one datagram
 constexpr size_t kMostDatagram = 60'000;
+constexpr uint64_t kMostNumber = uint64_t{1}
+                                 << 62;  ///< of epochs, rounds, ballots and lives; no sum of two overflows
 
 /// Names a state of the shared store: the one at the start of a round, as reached in an epoch. Later epochs
 /// come after all rounds of earlier ones.
@@ -38,10 +40,12 @@ struct Decision {
   friend bool operator==(const Decision&, const Decision&) = default;
 };
 
-/// Numbers the attempts to decide; of two, the greater wins.
+/// Numbers the attempts to decide; of two, the greater wins. A life that forgot which numbers the one before it
+/// used makes other ballots nevertheless.
 struct Ballot {
   uint64_t number = 0;
   uint32_t robot = 0;
+  uint64_t incarnation = 0;  ///< of that robot
   friend auto operator<=>(const Ballot&, const Ballot&) = default;
 };
 

@@ -25,12 +25,12 @@ std::vector<Body> All() {
   return {status,
           Part{{1, 30}, Member{2, 5}, 99, 0, 2, payload},
           Part{{2, 30}, std::nullopt, 99, 1, 2, View(payload).first(3)},
-          Prepare{2, {4, 1}},
-          Promise{2, {4, 1}, Ballot{3, 0}, decision, {1, 30}, 77},
-          Promise{2, {4, 1}, std::nullopt, std::nullopt, {1, 30}, 77},
-          Accept{{4, 1}, decision},
-          Accepted{2, {4, 1}},
-          Refusal{2, {8, 0}},
+          Prepare{2, {4, 1, 9}},
+          Promise{2, {4, 1, 9}, Ballot{3, 0, 2}, decision, {1, 30}, 77},
+          Promise{2, {4, 1, 9}, std::nullopt, std::nullopt, {1, 30}, 77},
+          Accept{{4, 1, 9}, decision},
+          Accepted{2, {4, 1, 9}},
+          Refusal{2, {8, 0, 1}},
           Decided{decision}};
 }
 
@@ -48,7 +48,7 @@ TEST(Messages, ComeBackAsTheyWereAndInOneFormOnly) {
 }
 
 TEST(Messages, ADatagramOfOthersIsRefusedAndSaysWhy) {
-  const Bytes bytes = Encoded(Prepare{2, {4, 1}});
+  const Bytes bytes = Encoded(Prepare{2, {4, 1, 9}});
   Message message;
   EXPECT_EQ(Decode(bytes, kAgreement + 1, kSession, kRobots, message), Refused::kForeign);
   EXPECT_EQ(Decode(bytes, kAgreement, kSession + 1, kRobots, message), Refused::kSession);

@@ -4,16 +4,20 @@
 
 namespace rondo::runtime::rounds {
 
+bool Assembly::Fits(const codec::Part& part) const {
+  return has_.empty() || (part.count == has_.size() && part.sum == sum_);
+}
+
 bool Assembly::Add(const codec::Part& part) {
   if (complete_) return true;
   if (has_.empty()) {
     has_.resize(part.count);
-    whole_.resize(size_t{part.count} * codec::kPart);
     sum_ = part.sum;
   }
-  if (part.count != has_.size() || part.sum != sum_ || has_[part.index]) return false;
-  std::ranges::copy(part.bytes, whole_.begin() + static_cast<ptrdiff_t>(size_t{part.index} * codec::kPart));
-  if (part.index + 1 == part.count) whole_.resize(size_t{part.index} * codec::kPart + part.bytes.size());
+  if (!Fits(part) || has_[part.index]) return false;
+  const size_t begin = size_t{part.index} * codec::kPart;
+  whole_.resize(std::max(whole_.size(), begin + part.bytes.size()));
+  std::ranges::copy(part.bytes, whole_.begin() + static_cast<ptrdiff_t>(begin));
   has_[part.index] = true;
   if (++count_ < has_.size()) return false;
   if (codec::Sum(whole_) != sum_) {

@@ -13,6 +13,8 @@ class Assembly {
  public:
   /// Returns true if the whole is complete, now or since before.
   bool Add(const codec::Part& part);
+  /// Reports whether the part belongs to the same whole as those that came before.
+  bool Fits(const codec::Part& part) const;
   /// Sets the whole.
   void Set(codec::Bytes whole);
   void Clear() { *this = Assembly(); }

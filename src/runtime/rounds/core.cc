@@ -39,6 +39,11 @@ Core::Core(const Settings& settings, Program& program, Disk* disk, std::optional
 void Core::Step(Time now, View datagram, std::vector<Output>& outputs) {
   now_ = std::max(now_, now);
   outputs_ = &outputs;
+  if (settings_.robots > codec::kMostRobots || settings_.self >= settings_.robots) {
+    if (phase_ != Phase::kHalted) Fail("no such robot, or too many");
+    return Wake();
+  }
+  acted_ = false;
   if (!started_) {
     started_ = true;
     Progress();
@@ -112,7 +117,9 @@ void Core::On(Member from, const codec::Status& status) {
 void Core::On(Member from, const codec::Part& part) {
   if (!decision_ || part.at.epoch != Epoch() || phase_ == Phase::kHalted) return;
   if (!part.of) {
-    if (phase_ == Phase::kFetching && part.at == place_ && base_.Add(part)) Enter();
+    if (phase_ != Phase::kFetching || part.at != place_ || part.sum != decision_->digest) return;
+    progress_at_ = now_;
+    if (base_.Add(part)) Enter();
     return;
   }
   const int rank = RankOf(*part.of);
@@ -126,6 +133,8 @@ void Core::On(Member from, const codec::Part& part) {
     TryCommit();
   }
   Assembly& frame = frames_[static_cast<size_t>(rank)];
+  // Nobody knows better what its frame is.
+  if (*part.of == from && !frame.complete() && !frame.Fits(part)) frame.Clear();
   if (frame.complete() || !frame.Add(part)) return;
   const auto contribution = Decode(View(frame.whole()));
   if (!contribution || !program_.Accepts(part.of->robot, contribution->inputs, contribution->alternatives)) {
@@ -139,9 +148,11 @@ void Core::On(Member from, const codec::Part& part) {
 void Core::Timers() {
   if (phase_ == Phase::kHalted) return;
   TryCommit();
-  if (phase_ == Phase::kCommitted && now_ >= round_start_ + settings_.delta) Begin();
+  // Not in the step in which it acts: the program's store has to be that one until the step is over.
+  if (phase_ == Phase::kCommitted && !acted_ && now_ >= round_start_ + settings_.delta) Begin();
   Repeat();
-  TryEpoch();
+  TryHalt();
+  if (phase_ != Phase::kHalted) TryEpoch();
 }
 
 void Core::Wake() {

@@ -23,7 +23,8 @@ struct Send {
   uint32_t to;
   Bytes bytes;
 };
-/// Says that actuators and streams get what the store says; no write may take effect after `until`.
+/// Says that actuators and streams get what the program's store says when the step is over; no write may take
+/// effect after `until`.
 struct Act {
   Place at;
   Time until;
@@ -79,6 +80,8 @@ std::string_view Name(Phase phase);
 /// lease. Requires clocks within `drift_ppm` of each other and adapters that keep `stop_time`.
 class Core {
  public:
+  /// @param settings  with at most `codec::kMostRobots` robots; the incarnation is greater than in any life before,
+  /// also if the disk was lost.
   /// @param program  outlives the core; its store is the one before `init`, or what `record` says.
   /// @param disk  nullptr: nothing is kept, and a robot does not vote after a crash until an epoch admits it
   /// and it has the store of that. Else stores and promises are kept before anybody hears of them.
@@ -152,6 +155,7 @@ class Core {
   bool MayJoin(uint32_t robot) const;
   Time Silence() const;
   std::vector<Member> Candidates() const;
+  void TryHalt();
   void TryEpoch();
   void Ask();
   void Choose();
@@ -185,6 +189,7 @@ class Core {
 
   // Acting.
   bool active_ = false;
+  bool acted_ = false;  // in this step
   Time lease_end_ = 0;
   Time not_before_ = 0;  // in this epoch nobody acts earlier
 

@@ -49,7 +49,8 @@ std::vector<Member> Core::Candidates() const {
 bool Core::Wanted() const {
   if (!MayVote(Epoch() + 1)) return false;
   const bool silent = Silence() >= settings_.patience;
-  bool reason = !decision_ || (voter_.promised && silent);
+  // A promise that came to nothing, or a store that nobody has any more.
+  bool reason = !decision_ || ((voter_.promised || phase_ == Phase::kFetching) && silent);
   if (decision_ && settings_.on_loss == OnLoss::kHalt) return false;
   for (uint32_t r = 0; decision_ && r < settings_.robots; ++r) reason = reason || MayJoin(r);
   const std::vector<Member> all = Candidates();
@@ -59,6 +60,16 @@ bool Core::Wanted() const {
   const size_t candidates = all.size();
   if (!decision_ || settings_.on_loss == OnLoss::kWait) return candidates == settings_.robots;
   return Majority(static_cast<uint32_t>(candidates));
+}
+
+// With `halt` nobody is given up: who waits for others longer than any lease says that the session is over, be it
+// that it never acted.
+void Core::TryHalt() {
+  if (settings_.on_loss != OnLoss::kHalt || !decision_ || phase_ == Phase::kCommitted) return;
+  if (Silence() < settings_.lease + settings_.patience) return;
+  active_ = false;
+  phase_ = Phase::kHalted;
+  outputs_->push_back(FallBack{});
 }
 
 void Core::TryEpoch() {
@@ -77,11 +88,11 @@ void Core::TryEpoch() {
   if (now_ < try_at_) return;
   try_at_ = now_ + settings_.patience / 2 + turn * order;
   const uint64_t epoch = Epoch() + 1;
-  const Ballot ballot{++highest_ballot_, settings_.self};
+  const Ballot ballot{++highest_ballot_, settings_.self, settings_.incarnation};
   trial_.emplace(epoch, ballot, settings_.robots, epoch == 1 ? settings_.robots : settings_.majority());
   if (!voter_.Prepare(ballot)) return;
   KeepRecord();
-  if (disk_failed_) return;
+  if (disk_failed_) return trial_.reset();
   Ask();
   if (trial_->Promised(settings_.self, {epoch, ballot, voter_.accepted, voter_.value, held_, digest_}))
     Choose();
@@ -171,9 +182,11 @@ void Core::Adopt(const Decision& decision) {
   base_.Clear();
   asked_in_epoch_ = false;
   // The leases of those who were left behind end first.
-  const Time lease = settings_.lease + (settings_.lease / 1'000'000 + 1) * 2 * settings_.drift_ppm;
-  not_before_ = decision.epoch == 1 ? now_ : now_ + lease + settings_.stop_time;
+  const Time rest = settings_.lease + settings_.stop_time;
+  const Time wait = rest + (rest / 1'000'000 + 1) * 2 * settings_.drift_ppm;
+  not_before_ = decision.epoch == 1 ? now_ : now_ + wait;
   voter_.Reset(decision.epoch + 1);
+  highest_ballot_ = 0;
   trial_.reset();
   wanted_ = false;
   outputs_->push_back(Adopted{decision});
@@ -197,6 +210,8 @@ void Core::Adopt(const Decision& decision) {
 
 // The store that the epoch begins with is here.
 void Core::Enter() {
+  // Who promised to decide on the next epoch stores nothing more in this one.
+  if (voter_.promised) return;
   if (codec::Sum(base_.whole()) != decision_->digest || !program_.Load(View(base_.whole()))) {
     base_.Clear();
     return;

@@ -32,7 +32,8 @@ class Program {
 
   /// Appends what this robot does in a round, from the store and its sensors: a `Contribution`.
   virtual void Contribute(uint64_t round, Bytes& out) = 0;
-  /// Reports whether `Apply` can carry out such a contribution of a robot.
+  /// Reports whether `Apply` can carry out such a contribution of a robot. One without inputs and alternatives
+  /// is always accepted: the robot's sensors stay as they were, and it skips.
   virtual bool Accepts(uint32_t robot, View inputs, std::span<const Alternative> alternatives) const = 0;
   /// Makes the store at the start of the next round: the sensors get what the inputs say, then all take their
   /// turns in this order. All turns were accepted.

@@ -11,6 +11,13 @@ void Core::Begin() {
   phase_ = Phase::kCollecting;
   Bytes payload;
   program_.Contribute(place_.round, payload);
+  // What others would refuse must not be merged here alone: then the robot does nothing.
+  const auto mine = Decode(View(payload));
+  if (!mine || !program_.Accepts(settings_.self, mine->inputs, mine->alternatives)) {
+    ++refused_[static_cast<size_t>(codec::Refused::kMalformed)];
+    payload.clear();
+    Encode(Contribution(), payload);
+  }
   outputs_->push_back(Contributed{place_, payload});
   frames_[static_cast<size_t>(rank_)].Set(std::move(payload));
   Progress();
@@ -64,7 +71,7 @@ void Core::TryCommit() {
   // The answer is to a frame that was sent in this epoch: those who decide on the next one know when.
   if (asked_in_epoch_) lease_end_ = std::max(lease_end_, first_sent_ + settings_.lease);
   if (!asked_in_epoch_ || now_ >= lease_end_) return;
-  active_ = true;
+  active_ = acted_ = true;
   outputs_->push_back(Act{place_, lease_end_});
 }
 

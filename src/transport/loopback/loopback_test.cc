@@ -7,6 +7,8 @@
 #include <set>
 #include <thread>
 
+#include "runtime/rounds/adder_test.h"
+
 namespace rondo::transport::loopback {
 namespace {
 
@@ -33,34 +35,6 @@ TEST(Loopback, TheOldestGiveWay) {
   for (uint8_t i = 2; i < 5; ++i) EXPECT_EQ(b->Receive(b->Now()), Bytes{i});
   EXPECT_EQ(b->Receive(b->Now()), std::nullopt);
 }
-
-// A store that is a number: everybody adds to it.
-class Adder : public Program {
- public:
-  explicit Adder(uint32_t robot) : robot_(robot) {}
-  void Contribute(uint64_t, Bytes& out) override {
-    const Bytes effect{static_cast<uint8_t>(robot_ + 1)};
-    Encode(Contribution{{}, {{0, false, effect}}}, out);
-  }
-  bool Accepts(uint32_t, View, std::span<const Alternative> all) const override {
-    return all.size() == 1 && all[0].effect.size() == 1;
-  }
-  void Apply(uint64_t, std::span<const Turn> turns) override {
-    for (const Turn& turn : turns) sum_ += turn.does->effect[0];
-  }
-  void Save(Bytes& out) const override { runtime::codec::Writer(out).Number(sum_); }
-  bool Load(View bytes) override {
-    runtime::codec::Reader reader(bytes);
-    const uint64_t sum = reader.Number();
-    if (reader.Complete()) sum_ = sum;
-    return reader.Complete();
-  }
-  uint64_t sum() const { return sum_; }
-
- private:
-  uint32_t robot_;
-  uint64_t sum_ = 0;
-};
 
 // Threads, a real clock: all act on the same stores, one round after the other.
 TEST(Drive, AFleetOfThreadsAgrees) {

@@ -1,0 +1,258 @@
+#include "runtime/rounds/core.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <memory>
+
+#include "runtime/rounds/adder_test.h"
+
+namespace rondo::runtime::rounds {
+namespace {
+
+constexpr Time kMillisecond = 1'000'000;
+constexpr uint32_t kRobots = 3;
+
+Settings SettingsOf(uint32_t robot, uint64_t incarnation = 1) {
+  Settings settings;
+  settings.self = robot;
+  settings.robots = kRobots;
+  settings.incarnation = incarnation;
+  settings.on_loss = OnLoss::kEvict;
+  return settings;
+}
+
+// Cores whose datagrams take a millisecond, if `lets` lets them through.
+class Trio {
+ public:
+  Trio() {
+    for (uint32_t r = 0; r < kRobots; ++r) {
+      programs.push_back(std::make_unique<Adder>(r));
+      cores.push_back(std::make_unique<Core>(SettingsOf(r), *programs[r], nullptr, std::nullopt));
+    }
+  }
+  void Run(Time span) {
+    for (const Time end = now + span; now < end; now += kMillisecond) {
+      std::vector<std::pair<uint32_t, Bytes>> arriving;
+      std::swap(arriving, waiting);
+      for (uint32_t r = 0; r < kRobots; ++r) Step(r, {});
+      for (const auto& [to, bytes] : arriving) Step(to, bytes);
+    }
+  }
+  void Step(uint32_t robot, View datagram) {
+    std::vector<Output> outputs;
+    cores[robot]->Step(now, datagram, outputs);
+    for (const Output& output : outputs) {
+      if (const auto* send = std::get_if<Send>(&output)) {
+        for (uint32_t to = 0; to < kRobots; ++to) {
+          if (to != robot && (send->to == kAll || send->to == to) && lets(robot, to, send->bytes))
+            waiting.emplace_back(to, send->bytes);
+        }
+      }
+      if (const auto* stored = std::get_if<Stored>(&output)) {
+        const auto [it, fresh] = digests.emplace(stored->at, stored->digest);
+        EXPECT_EQ(it->second, stored->digest) << stored->at.round;
+      }
+      if (const auto* act = std::get_if<Act>(&output)) {
+        // What is acted on is what the program has when the step is over.
+        Bytes store;
+        programs[robot]->Save(store);
+        EXPECT_EQ(codec::Sum(store), digests.at(act->at)) << act->at.round;
+        ++acts;
+      }
+      EXPECT_FALSE(std::holds_alternative<Broken>(output));
+    }
+  }
+
+  std::vector<std::unique_ptr<Adder>> programs;
+  std::vector<std::unique_ptr<Core>> cores;
+  std::function<bool(uint32_t, uint32_t, View)> lets = [](uint32_t, uint32_t, View) { return true; };
+  std::vector<std::pair<uint32_t, Bytes>> waiting;
+  std::map<Place, uint64_t> digests;
+  Time now = 0;
+  int acts = 0;
+};
+
+bool IsStatus(View bytes) {
+  codec::Message message;
+  return codec::Decode(bytes, 0, 0, kRobots, message) == codec::Refused::kNothing &&
+         std::holds_alternative<codec::Status>(message.body);
+}
+
+TEST(Core, RoundsGoOnAndAllAct) {
+  Trio trio;
+  trio.Run(1500 * kMillisecond);
+  for (const auto& core : trio.cores) EXPECT_GE(core->place().round, 13U);
+  EXPECT_GE(trio.acts, 3 * 13);
+  EXPECT_EQ(trio.programs[0]->sum() % 6, 0U);
+}
+
+TEST(Core, WhoActsHasNotGoneOnWhenTheStepIsOver) {
+  Trio trio;
+  trio.Run(350 * kMillisecond);
+  // Robot 0 hears what others do, but not that they have stored it; then it is behind, and catches up in one step.
+  trio.lets = [](uint32_t, uint32_t to, View bytes) { return to != 0 || !IsStatus(bytes); };
+  trio.Run(900 * kMillisecond);
+  EXPECT_GE(trio.acts, 3 * 9);
+}
+
+TEST(Core, WhatNobodyAcceptsIsASkip) {
+  Trio trio;
+  trio.programs[1]->foul = true;
+  trio.Run(1500 * kMillisecond);
+  for (const auto& core : trio.cores) EXPECT_GE(core->place().round, 13U);
+  for (const auto& program : trio.programs) EXPECT_EQ(program->sum(), 4 * trio.cores[0]->place().round);
+  EXPECT_GT(trio.cores[1]->refused()[static_cast<size_t>(codec::Refused::kMalformed)], 0U);
+}
+
+// One core, and messages as others would send them.
+class OneCoreTest : public testing::Test {
+ protected:
+  std::vector<Output> Hear(uint32_t from, codec::Body body, uint64_t incarnation = 1) {
+    Bytes bytes;
+    codec::Encode({0, 0, {from, incarnation}, std::move(body)}, bytes);
+    std::vector<Output> outputs;
+    now_ += kMillisecond;
+    core_.Step(now_, bytes, outputs);
+    return outputs;
+  }
+  static size_t CountStored(const std::vector<Output>& outputs) {
+    size_t count = 0;
+    for (const Output& output : outputs) count += std::holds_alternative<Stored>(output) ? 1 : 0;
+    return count;
+  }
+  template <typename Body>
+  static std::optional<Body> Sent(const std::vector<Output>& outputs) {
+    for (const Output& output : outputs) {
+      const auto* send = std::get_if<Send>(&output);
+      codec::Message message;
+      if (send == nullptr || codec::Decode(send->bytes, 0, 0, kRobots, message) != codec::Refused::kNothing)
+        continue;
+      if (const auto* body = std::get_if<Body>(&message.body)) return *body;
+    }
+    return std::nullopt;
+  }
+  static uint64_t DigestOf(uint64_t sum) {
+    Bytes store;
+    codec::Writer(store).Number(sum);
+    return codec::Sum(store);
+  }
+  const std::vector<Member> everybody_{{0, 1}, {1, 1}, {2, 1}};
+
+  Adder program_{0};
+  Core core_{SettingsOf(0), program_, nullptr, std::nullopt};
+  Time now_ = 0;
+};
+
+// Else a majority seems to have the store, of which one promised that it does not.
+TEST_F(OneCoreTest, WhoPromisedStoresNothingMoreOfItsEpoch) {
+  EXPECT_EQ(CountStored(Hear(1, codec::Decided{{1, everybody_, {0, 0}, DigestOf(0)}})), 1U);
+  Hear(1, codec::Decided{{2, everybody_, {1, 3}, DigestOf(18)}});
+  EXPECT_EQ(core_.phase(), Phase::kFetching);
+  const auto promise = Sent<codec::Promise>(Hear(2, codec::Prepare{3, {5, 2, 1}}));
+  ASSERT_TRUE(promise.has_value());
+  EXPECT_EQ(promise->newest, (Place{1, 0}));
+  Bytes store;
+  codec::Writer(store).Number(18);
+  const codec::Part part{{2, 3}, std::nullopt, codec::Sum(store), 0, 1, store};
+  EXPECT_EQ(CountStored(Hear(1, part)), 0U);
+  EXPECT_EQ(core_.phase(), Phase::kFetching);
+  // The decision sets it free.
+  Hear(2, codec::Decided{{3, everybody_, {2, 3}, DigestOf(18)}});
+  EXPECT_EQ(CountStored(Hear(1, codec::Part{{3, 3}, std::nullopt, codec::Sum(store), 0, 1, store})), 1U);
+}
+
+// A life that forgot the ballots of the one before makes others.
+TEST_F(OneCoreTest, AnswersToAnEarlierLifeDoNotCount) {
+  Adder program(0);
+  Core second(SettingsOf(0, 2), program, nullptr, std::nullopt);
+  std::vector<Output> outputs;
+  const auto hear = [&](uint32_t from, codec::Body body) {
+    Bytes bytes;
+    codec::Encode({0, 0, {from, 1}, std::move(body)}, bytes);
+    outputs.clear();
+    now_ += kMillisecond;
+    second.Step(now_, bytes, outputs);
+  };
+  std::optional<codec::Prepare> prepare;
+  for (int i = 0; i < 50 && !prepare; ++i) {
+    hear(1 + static_cast<uint32_t>(i) % 2, codec::Status{});
+    prepare = Sent<codec::Prepare>(outputs);
+  }
+  ASSERT_TRUE(prepare.has_value());
+  EXPECT_EQ(prepare->ballot.incarnation, 2U);
+  const auto promise = [&](uint64_t incarnation) {
+    const Ballot ballot{prepare->ballot.number, 0, incarnation};
+    return codec::Promise{1, ballot, std::nullopt, std::nullopt, {0, 0}, DigestOf(0)};
+  };
+  for (uint32_t r = 1; r < kRobots; ++r) hear(r, promise(1));
+  EXPECT_FALSE(Sent<codec::Accept>(outputs).has_value());
+  hear(1, promise(2));
+  hear(2, promise(2));
+  EXPECT_TRUE(Sent<codec::Accept>(outputs).has_value());
+}
+
+// A robot that came back without its memory votes when it has the store of an epoch that admitted it.
+TEST_F(OneCoreTest, WhoForgotVotesWhenItHasTheStore) {
+  Hear(1, codec::Decided{{4, everybody_, {3, 7}, DigestOf(42)}});
+  EXPECT_FALSE(Sent<codec::Promise>(Hear(2, codec::Prepare{5, {5, 2, 1}})).has_value());
+  Bytes store;
+  codec::Writer(store).Number(42);
+  EXPECT_EQ(CountStored(Hear(1, codec::Part{{4, 7}, std::nullopt, codec::Sum(store), 0, 1, store})), 1U);
+  EXPECT_TRUE(Sent<codec::Promise>(Hear(2, codec::Prepare{5, {5, 2, 1}})).has_value());
+}
+
+// Else everybody who is left waits for it for ever.
+TEST_F(OneCoreTest, AStoreThatNobodyHasIsGivenUp) {
+  Hear(1, codec::Decided{{1, everybody_, {0, 0}, DigestOf(0)}});
+  Hear(1, codec::Decided{{2, everybody_, {1, 3}, DigestOf(18)}});
+  std::optional<codec::Prepare> prepare;
+  for (int i = 0; i < 3000 && !prepare; ++i)
+    prepare = Sent<codec::Prepare>(Hear(1 + static_cast<uint32_t>(i) % 2, codec::Status{{2, 3}}));
+  ASSERT_TRUE(prepare.has_value());
+  EXPECT_EQ(prepare->epoch, 3U);
+}
+
+TEST_F(OneCoreTest, ABaseIsWhatWasDecided) {
+  Hear(1, codec::Decided{{4, everybody_, {3, 7}, DigestOf(42)}});
+  Bytes store;
+  codec::Writer(store).Number(41);
+  EXPECT_EQ(CountStored(Hear(1, codec::Part{{4, 7}, std::nullopt, codec::Sum(store), 0, 1, store})), 0U);
+  EXPECT_EQ(core_.phase(), Phase::kFetching);
+}
+
+TEST(Core, WhoCannotBeIsHalted) {
+  Adder program(0);
+  Settings settings = SettingsOf(7);
+  Core core(settings, program, nullptr, std::nullopt);
+  std::vector<Output> outputs;
+  core.Step(0, {}, outputs);
+  ASSERT_EQ(outputs.size(), 1U);
+  EXPECT_TRUE(std::holds_alternative<Broken>(outputs[0]));
+  EXPECT_EQ(core.wake(), INT64_MAX);
+}
+
+// With `halt`, who was left before anything was done does not wait for ever.
+TEST(Core, AFleetThatNeverBeganHalts) {
+  Adder program(0);
+  Settings settings = SettingsOf(0);
+  settings.on_loss = OnLoss::kHalt;
+  Core core(settings, program, nullptr, std::nullopt);
+  Bytes bytes;
+  const std::vector<Member> everybody{{0, 1}, {1, 1}, {2, 1}};
+  Bytes store;
+  program.Save(store);
+  codec::Encode({0, 0, {1, 1}, codec::Decided{{1, everybody, {0, 0}, codec::Sum(store)}}}, bytes);
+  std::vector<Output> outputs;
+  core.Step(0, bytes, outputs);
+  EXPECT_EQ(core.phase(), Phase::kStored);
+  for (Time now = 0; now < 2000 * kMillisecond; now += kMillisecond) core.Step(now, {}, outputs);
+  EXPECT_EQ(core.phase(), Phase::kHalted);
+  EXPECT_TRUE(
+      std::ranges::any_of(outputs, [](const Output& o) { return std::holds_alternative<FallBack>(o); }));
+}
+
+}  // namespace
+}  // namespace rondo::runtime::rounds
