@@ -209,8 +209,10 @@ TEST_F(OneCoreTest, AStoreThatNobodyHasIsGivenUp) {
   Hear(1, codec::Decided{{1, everybody_, {0, 0}, DigestOf(0)}});
   Hear(1, codec::Decided{{2, everybody_, {1, 3}, DigestOf(18)}});
   std::optional<codec::Prepare> prepare;
+  codec::Status waits;
+  waits.at = {2, 3};
   for (int i = 0; i < 3000 && !prepare; ++i)
-    prepare = Sent<codec::Prepare>(Hear(1 + static_cast<uint32_t>(i) % 2, codec::Status{{2, 3}}));
+    prepare = Sent<codec::Prepare>(Hear(1 + static_cast<uint32_t>(i) % 2, waits));
   ASSERT_TRUE(prepare.has_value());
   EXPECT_EQ(prepare->epoch, 3U);
 }
