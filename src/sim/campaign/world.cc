@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/mixed.h"
+#include "sim/campaign/noise.h"
 #include "transport/simulated/clock.h"
 
 namespace rondo::sim::campaign {
@@ -20,46 +21,6 @@ using rounds::Phase;
 using runtime::codec::Bytes;
 
 namespace {
-
-// Sensors that say something else each time that they are read.
-class Noise : public koord::node::Sensors {
- public:
-  Noise(const koord::semantics::Team& team, uint64_t seed, const Time& now)
-      : team_(team), seed_(seed), now_(now) {}
-
-  void Read(size_t robot, uint64_t, koord::node::Cell cell, std::span<Word> words) override {
-    const lang::TypeId type = team_.layout()[cell.variable].item;
-    std::vector<koord::semantics::WordKind> kinds;
-    koord::semantics::Layout::Kinds(team_.model().types, type, kinds);
-    const lang::Type& shape = team_.model().types[type];
-    for (size_t i = 0; i < words.size() && i < kinds.size(); ++i) {
-      const uint64_t x =
-          base::Mixed(seed_ ^ base::Mixed(static_cast<uint64_t>(now_) + robot * 64 + cell.variable * 8 + i));
-      switch (kinds[i]) {
-        case koord::semantics::WordKind::kBool:
-          words[i] = x & 1;
-          break;
-        case koord::semantics::WordKind::kInt:
-          words[i] = x % 8;
-          break;
-        case koord::semantics::WordKind::kFloat:
-          words[i] = koord::semantics::FromFloat(static_cast<double>(x % 2000) / 100 - 10);
-          break;
-        case koord::semantics::WordKind::kEnum:
-          if (shape.kind == lang::TypeKind::kEnum && !shape.fields.empty())
-            words[i] = x % shape.fields.size();
-          break;
-        case koord::semantics::WordKind::kHandle:
-          break;
-      }
-    }
-  }
-
- private:
-  const koord::semantics::Team& team_;
-  uint64_t seed_;
-  const Time& now_;
-};
 
 class MemoryDisk : public rounds::Disk {
  public:
