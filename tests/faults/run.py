@@ -50,7 +50,7 @@ def woven(fault):
     """The text with both variants: a statement if it ends like one, otherwise an expression."""
     switch = f'RONDO_FAULT_IS("{fault["name"]}")'
     old, new = fault["old"].strip("\n"), fault["new"].strip("\n")
-    if old.rstrip().endswith((";", "}")):
+    if ";" in old and old.rstrip().endswith((";", "}")):
         return f"if ({switch}) {{ {new} }} else {{ {old} }}"
     return f"({switch} ? ({new}) : ({old}))"
 

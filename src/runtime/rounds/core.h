@@ -156,6 +156,8 @@ class Core {
   Time Silence() const;
   std::vector<Member> Candidates() const;
   void TryHalt();
+  Time Turn() const;
+  Time Again() const;
   void TryEpoch();
   void Ask();
   void Choose();
@@ -206,6 +208,7 @@ class Core {
   std::optional<Attempt> trial_;  // to decide the next epoch
   uint64_t highest_ballot_ = 0;
   Time try_at_ = 0;
+  uint32_t tries_ = 0;  // since it is wanted
   bool wanted_ = false;
 
   std::array<uint64_t, 5> refused_{};

@@ -72,27 +72,40 @@ void Core::TryHalt() {
   outputs_->push_back(FallBack{});
 }
 
+// Robots try one after the other, so that their attempts do not stop each other for ever.
+Time Core::Turn() const {
+  return 2 * settings_.resend * static_cast<Time>((settings_.self + Epoch()) % settings_.robots);
+}
+
+// When to try again what was refused: soon at first.
+Time Core::Again() const {
+  const Time pause = (2 * settings_.resend + Turn()) << std::min<uint32_t>(tries_, 5);
+  return std::min(try_at_, now_ + pause);
+}
+
 void Core::TryEpoch() {
   if (!Wanted()) {
     wanted_ = false;
     trial_.reset();
     return;
   }
-  // One after the other, so that attempts do not stop each other for ever.
-  const Time turn = 2 * settings_.resend;
-  const auto order = static_cast<Time>((settings_.self + Epoch()) % settings_.robots);
   if (!wanted_) {
     wanted_ = true;
-    try_at_ = now_ + turn * order;
+    tries_ = 0;
+    try_at_ = now_ + Turn();
   }
   if (now_ < try_at_) return;
-  try_at_ = now_ + settings_.patience / 2 + turn * order;
+  ++tries_;
+  try_at_ = now_ + settings_.patience / 2 + Turn();
   const uint64_t epoch = Epoch() + 1;
   const Ballot ballot{++highest_ballot_, settings_.self, settings_.incarnation};
   trial_.emplace(epoch, ballot, settings_.robots, epoch == 1 ? settings_.robots : settings_.majority());
   if (!voter_.Prepare(ballot)) return;
   KeepRecord();
-  if (disk_failed_) return trial_.reset();
+  if (disk_failed_) {
+    try_at_ = Again();
+    return trial_.reset();
+  }
   Ask();
   if (trial_->Promised(settings_.self, {epoch, ballot, voter_.accepted, voter_.value, held_, digest_}))
     Choose();
@@ -162,6 +175,7 @@ void Core::Vote() {
 
 void Core::On(Member, const codec::Refusal& refusal) {
   highest_ballot_ = std::max(highest_ballot_, refusal.promised.number);
+  if (trial_ && trial_->epoch() == refusal.epoch && trial_->ballot() < refusal.promised) try_at_ = Again();
 }
 
 void Core::On(Member, const codec::Decided& decided) { Adopt(decided.value); }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <iterator>
 #include <random>
 
 namespace rondo::sim::campaign {
@@ -79,12 +80,26 @@ Scenario Draw(uint64_t seed, size_t least, size_t most) {
   s.on_loss = static_cast<OnLoss>(below(s.robots == 2 ? 2 : 3));
   s.disks = below(2) == 0;
   const Time time = s.delta * static_cast<Time>(s.rounds) * 2 / 3;
+  // Every third run is a storm: lives that are short, and datagrams that outlive them, from some moment on (the
+  // beginning of the session, half of the time).
+  const bool storm = below(3) == 0;
+  const Time from = storm && below(2) == 0 ? static_cast<Time>(below(static_cast<uint64_t>(time))) : 0;
   const size_t count = below(9);
+  if (storm) {
+    s.faults.push_back(
+        {FaultKind::kDelay, from, 800'000'000, 0, 0, static_cast<double>(below(100) + 1) / 1000});
+    s.faults.push_back({FaultKind::kDuplicate, from, 800'000'000, 0, 0, 0.5});
+  }
   for (size_t i = 0; i < count; ++i) {
     Fault f;
-    f.kind = static_cast<FaultKind>(below(static_cast<uint64_t>(FaultKind::kDiskFull) + 1));
-    f.at = static_cast<Time>(below(static_cast<uint64_t>(time)));
-    f.length = static_cast<Time>(10'000'000 + below(below(2) == 0 ? 200'000'000 : 2'000'000'000));
+    constexpr FaultKind kLives[] = {FaultKind::kCrash, FaultKind::kForget, FaultKind::kPause,
+                                    FaultKind::kDiskFull};
+    f.kind = storm ? kLives[below(std::size(kLives))]
+                   : static_cast<FaultKind>(below(static_cast<uint64_t>(FaultKind::kDiskFull) + 1));
+    f.at = storm ? from + static_cast<Time>(below(700'000'000))
+                 : static_cast<Time>(below(static_cast<uint64_t>(time)));
+    const uint64_t longest = storm ? 60'000'000 : below(2) == 0 ? 200'000'000 : 2'000'000'000;
+    f.length = static_cast<Time>(10'000'000 + below(longest));
     f.robot = static_cast<uint32_t>(below(s.robots));
     f.other = s.robots == 1 ? 0 : static_cast<uint32_t>((f.robot + 1 + below(s.robots - 1)) % s.robots);
     f.amount = static_cast<double>(below(50) + 1) / 100;

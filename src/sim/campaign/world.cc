@@ -6,6 +6,7 @@
 #include <map>
 #include <queue>
 #include <set>
+#include <utility>
 
 #include "base/mixed.h"
 #include "sim/campaign/noise.h"
@@ -27,10 +28,12 @@ class MemoryDisk : public rounds::Disk {
   bool Keep(runtime::codec::View bytes) override {
     if (full) return false;
     record = Bytes(bytes.begin(), bytes.end());
+    fresh = true;
     return true;
   }
   std::optional<Bytes> record;
   bool full = false;
+  bool fresh = false;  // something was kept since this was last looked at
 };
 
 struct Robot {
@@ -42,6 +45,7 @@ struct Robot {
   Time paused_until = 0;
   uint64_t wake = 0;  // which of the wakes that are under way counts
   int crashes = 0;    // faults that keep it away
+  uint64_t kept = 0;  // the epoch of which its disk knows
   uint64_t committed = 0;
   Phase phase = Phase::kOutside;
 };
@@ -149,7 +153,7 @@ class World {
   bool Forgotten() const {
     if (out_.rounds == 0 && out_.record.members.empty()) return false;
     return std::ranges::none_of(robots_, [&](const Robot& robot) {
-      return (robot.alive && robot.core->place().epoch > 0) || (s_.disks && robot.disk.record);
+      return (robot.alive && robot.core->place().epoch > 0) || robot.kept > 0;
     });
   }
 
@@ -168,6 +172,7 @@ class World {
     Robot& robot = robots_[r];
     outputs_.clear();
     robot.core->Step(robot.clock.At(now_), datagram, outputs_);
+    if (std::exchange(robot.disk.fresh, false)) robot.kept = robot.core->place().epoch;
     for (const rounds::Output& output : outputs_) std::visit([&](const auto& o) { Do(r, o); }, output);
     visited_.insert(static_cast<uint64_t>(robot.phase) * kPhases +
                     static_cast<uint64_t>(robot.core->phase()));
@@ -246,6 +251,7 @@ class World {
         break;
       case FaultKind::kForget:
         robots_[f.robot].disk.record.reset();
+        robots_[f.robot].kept = 0;
         [[fallthrough]];
       case FaultKind::kCrash:
         Crash(f.robot);
