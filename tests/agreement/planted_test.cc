@@ -186,7 +186,7 @@ Outcome OutcomeOf(const std::string& text) {
   const Obligations obligations = ObligationsOf(checked.graphs[0], checked.arena);
   if (!obligations.missing.empty()) return Outcome::kRejected;
   ProveOptions options;
-  options.limits.time = std::chrono::milliseconds(2000);
+  options.limits.time = std::chrono::seconds(20);
   options.limits.certificates = false;
   options.jobs = 1;
   const Proofs proofs = Prove(obligations, checked.graphs[0], checked.arena, options);

@@ -55,7 +55,7 @@ FAULTS = [
 for example in sorted(EXAMPLES.glob("*.rondo")):
     if example.read_text().split("\n", 1)[0] != "# check: ok":
         continue
-    status, report = prove(example)
+    status, report = prove(example, "--timeout", "60")  # on a machine that has other things to do, too
     proofs = [o for c in report["choreographies"] for o in c["obligations"] if o["required"]]
     check(example.name, status == 0 and proofs and all(o["verdict"] == "proved" and o["certified"] for o in proofs),
           f"status {status}: " + "; ".join(d["message"] for d in report["diagnostics"]))
