@@ -74,10 +74,11 @@ enum class Phase : uint8_t {
 /// Returns `outside`, `fetching`, `stored`, `committed`, `collecting` or `halted`.
 std::string_view Name(Phase phase);
 
-/// Runs the protocol for one robot. What it guarantees: no two robots ever commit different stores for one
-/// round of one epoch; a store that some robot committed is never lost to a later epoch, as long as no
-/// majority of the fleet loses its memory at once; a robot acts only on committed stores, and not beyond its
-/// lease. Requires clocks within `drift_ppm` of each other and adapters that keep `stop_time`.
+/// Runs the protocol for one robot. What it guarantees (docs/theory.md, "Rounds on robots"): no two robots ever
+/// commit different stores for one round; a robot acts only on committed stores, and not beyond its lease; nobody
+/// acts in an epoch before the leases of those who are no members of it are over. Rounds go on only while a
+/// strict majority of the fleet has forgotten nothing. Requires clocks within `drift_ppm` of each other and
+/// adapters that keep `stop_time`.
 class Core {
  public:
   /// @param settings  with at most `codec::kMostRobots` robots; the incarnation is greater than in any life before,
