@@ -4,9 +4,10 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <fstream>
 #include <system_error>
 #include <utility>
+
+#include "base/file.h"
 
 namespace rondo::runtime::durable {
 namespace {
@@ -55,14 +56,9 @@ bool FileDisk::Keep(codec::View record) {
 }
 
 std::optional<codec::Bytes> FileDisk::Read() const {
-  std::error_code missing;
-  const auto size = std::filesystem::file_size(path_, missing);
-  if (missing || size > 2 * codec::kMostPayload) return std::nullopt;
-  std::ifstream file(path_, std::ios::binary);
-  codec::Bytes bytes(size);
-  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
-    return std::nullopt;
-  return bytes;
+  const auto text = base::ReadFile(path_, 2 * codec::kMostPayload);
+  if (!text.ok()) return std::nullopt;
+  return codec::Bytes(text.value().begin(), text.value().end());
 }
 
 }  // namespace rondo::runtime::durable

@@ -165,6 +165,7 @@ class Core {
   void Vote();
   void Adopt(const Decision& decision);
   void Enter();
+  void TakePart();
   void KeepRecord();
   void Recall(View record);
 

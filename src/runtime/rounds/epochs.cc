@@ -211,26 +211,23 @@ void Core::Adopt(const Decision& decision) {
     return;
   }
   phase_ = Phase::kFetching;
-  if (held_.round == decision.base.round && digest_ == decision.digest) {
-    votes_ = true;
-    round_start_ = now_ - settings_.delta;
-    StoreNow();
-    return;
-  }
+  if (held_.round == decision.base.round && digest_ == decision.digest) return TakePart();
   KeepRecord();
   attempt_ = 1;
   SendStatus();
 }
 
-// The store that the epoch begins with is here.
+// All parts of the store that the epoch begins with are here.
 void Core::Enter() {
   // Who promised to decide on the next epoch stores nothing more in this one.
   if (voter_.promised) return;
-  if (codec::Sum(base_.whole()) != decision_->digest || !program_.Load(View(base_.whole()))) {
-    base_.Clear();
-    return;
-  }
+  const bool loaded = program_.Load(View(base_.whole()));
   base_.Clear();
+  if (loaded) TakePart();
+}
+
+// It has the store of an epoch that admits it: the first round begins at once.
+void Core::TakePart() {
   votes_ = true;
   round_start_ = now_ - settings_.delta;
   StoreNow();

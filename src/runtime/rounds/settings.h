@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 /// What the round protocol has to know about a robot and its fleet.
 namespace rondo::runtime::rounds {
@@ -15,6 +16,19 @@ enum class OnLoss : uint8_t {
   kWait,   ///< every robot falls back, until all are heard again
   kEvict,  ///< a majority goes on without it
 };
+
+/// Returns `halt`, `wait` or `evict`.
+constexpr std::string_view Name(OnLoss on_loss) {
+  switch (on_loss) {
+    case OnLoss::kHalt:
+      return "halt";
+    case OnLoss::kWait:
+      return "wait";
+    case OnLoss::kEvict:
+      return "evict";
+  }
+  return "";
+}
 
 /// Holds what a core is made for.
 struct Settings {

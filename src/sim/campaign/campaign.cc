@@ -99,10 +99,8 @@ CampaignReport Search(Fleet& fleet, const Fleet::MakeTeam& make, const CampaignO
 
 std::string Story(const Failure& failure) {
   const Scenario& s = failure.scenario;
-  constexpr const char* kPolicies[] = {"halt", "wait", "evict"};
-  std::string text =
-      fmt::format("{} robots, on_loss = \"{}\", {} disks, seed {}\n", s.robots,
-                  kPolicies[static_cast<size_t>(s.on_loss)], s.disks ? "with" : "without", s.seed);
+  std::string text = fmt::format("{} robots, on_loss = \"{}\", {} disks, seed {}\n", s.robots,
+                                 Name(s.on_loss), s.disks ? "with" : "without", s.seed);
   for (const Fault& fault : s.faults) text += "  " + Tell(fault) + "\n";
   if (!failure.other.empty()) text += failure.other + "\n";
   constexpr size_t kMost = 5, kAround = 12;

@@ -102,12 +102,11 @@ std::string WriteScenario(const Scenario& s, const std::string& comment) {
   std::string text;
   std::istringstream lines(comment);
   for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
-  const char* policy = s.on_loss == OnLoss::kHalt ? "halt" : s.on_loss == OnLoss::kWait ? "wait" : "evict";
   text += fmt::format(
       "[[scenario]]\nseed = {}\nrobots = {}\nrounds = {}\non_loss = \"{}\"\ndisks = {}\ndelta = {}\nlease = {}\n"
       "stop_time = {}\npatience = {}\n",
-      s.seed, s.robots, s.rounds, policy, s.disks, Seconds(s.delta), Seconds(s.lease), Seconds(s.stop_time),
-      Seconds(s.patience));
+      s.seed, s.robots, s.rounds, Name(s.on_loss), s.disks, Seconds(s.delta), Seconds(s.lease),
+      Seconds(s.stop_time), Seconds(s.patience));
   for (const Fault& f : s.faults) {
     text += fmt::format(
         "\n[[scenario.fault]]\nkind = \"{}\"\nat = {}\nlength = {}\nrobot = {}\nother = {}\namount = {:.17g}\n",

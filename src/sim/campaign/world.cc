@@ -158,8 +158,8 @@ class World {
   }
 
   void Handle(const Event& event) {
-    if (event.what == What::kFaultBegins) return Begin(s_.faults[event.robot]);
-    if (event.what == What::kFaultEnds) return End(s_.faults[event.robot]);
+    if (event.what == What::kFaultBegins) return Let(s_.faults[event.robot], true);
+    if (event.what == What::kFaultEnds) return Let(s_.faults[event.robot], false);
     Robot& robot = robots_[event.robot];
     if (!robot.alive) return;
     if (now_ < robot.paused_until)
@@ -220,89 +220,61 @@ class World {
 
   // -- faults
 
-  void Begin(const Fault& f) {
+  // Cuts the way from one robot to another, or mends it.
+  void Way(uint32_t from, uint32_t to, bool cut) { cut ? network_.Cut(from, to) : network_.Mend(from, to); }
+
+  // Begins a fault, or ends it.
+  void Let(const Fault& f, bool begins) {
     auto& c = network_.conditions;
+    const double share = begins ? f.amount : 0;
+    Robot& robot = robots_[f.robot];
     switch (f.kind) {
       case FaultKind::kLoss:
-        c.loss = f.amount;
+        c.loss = share;
         break;
-      case FaultKind::kDelay:
-        c.most = static_cast<Time>(f.amount * 1e9);
-        c.least = std::min(c.least, c.most);
+      case FaultKind::kDelay: {
+        const transport::simulated::Conditions usual;
+        c.most = begins ? static_cast<Time>(f.amount * 1e9) : usual.most;
+        c.least = begins ? std::min(c.least, c.most) : usual.least;
         break;
+      }
       case FaultKind::kDuplicate:
-        c.duplicate = f.amount;
+        c.duplicate = share;
         break;
       case FaultKind::kCorrupt:
-        c.corrupt = f.amount;
+        c.corrupt = share;
         break;
       case FaultKind::kOneWay:
-        network_.Cut(f.robot, f.other);
+        Way(f.robot, f.other, begins);
         break;
       case FaultKind::kCut:
-        network_.Cut(f.robot, f.other);
-        network_.Cut(f.other, f.robot);
+        Way(f.robot, f.other, begins);
+        Way(f.other, f.robot, begins);
         break;
       case FaultKind::kAlone:
         for (uint32_t r = 0; r < s_.robots; ++r) {
-          network_.Cut(f.robot, r);
-          network_.Cut(r, f.robot);
+          Way(f.robot, r, begins);
+          Way(r, f.robot, begins);
         }
         break;
-      case FaultKind::kForget:
-        robots_[f.robot].disk.record.reset();
-        robots_[f.robot].kept = 0;
-        [[fallthrough]];
       case FaultKind::kCrash:
+      case FaultKind::kForget:
+        if (!begins) {
+          if (--robot.crashes == 0) Start(f.robot);
+          break;
+        }
+        if (f.kind == FaultKind::kForget) {
+          robot.disk.record.reset();
+          robot.kept = 0;
+        }
         Crash(f.robot);
         forgotten_ = forgotten_ || Forgotten();
         break;
       case FaultKind::kPause:
-        robots_[f.robot].paused_until = std::max(robots_[f.robot].paused_until, f.at + f.length);
+        if (begins) robot.paused_until = std::max(robot.paused_until, f.at + f.length);
         break;
       case FaultKind::kDiskFull:
-        robots_[f.robot].disk.full = true;
-        break;
-    }
-  }
-
-  void End(const Fault& f) {
-    auto& c = network_.conditions;
-    switch (f.kind) {
-      case FaultKind::kLoss:
-        c.loss = 0;
-        break;
-      case FaultKind::kDelay:
-        c.least = transport::simulated::Conditions().least;
-        c.most = transport::simulated::Conditions().most;
-        break;
-      case FaultKind::kDuplicate:
-        c.duplicate = 0;
-        break;
-      case FaultKind::kCorrupt:
-        c.corrupt = 0;
-        break;
-      case FaultKind::kOneWay:
-        network_.Mend(f.robot, f.other);
-        break;
-      case FaultKind::kCut:
-        network_.Mend(f.robot, f.other);
-        network_.Mend(f.other, f.robot);
-        break;
-      case FaultKind::kAlone:
-        for (uint32_t r = 0; r < s_.robots; ++r) {
-          network_.Mend(f.robot, r);
-          network_.Mend(r, f.robot);
-        }
-        break;
-      case FaultKind::kCrash:
-      case FaultKind::kForget:
-        if (--robots_[f.robot].crashes == 0) Start(f.robot);
-        break;
-      case FaultKind::kPause:
-        break;
-      case FaultKind::kDiskFull:
-        robots_[f.robot].disk.full = false;
+        robot.disk.full = begins;
         break;
     }
   }
