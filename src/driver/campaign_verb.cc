@@ -14,6 +14,7 @@
 #include "sim/campaign/any_functions.h"
 #include "sim/campaign/campaign.h"
 #include "sim/campaign/scenario_file.h"
+#include "sim/cores/cores.h"
 #include "sim/parameters.h"
 #include "workspace/koord_files.h"
 
@@ -65,9 +66,9 @@ class Teams {
 nlohmann::json ToJson(const campaign::CampaignReport& report, double seconds) {
   nlohmann::json steps = nlohmann::json::array();
   for (const uint64_t pair : report.visited) {
-    steps.push_back(fmt::format("{} -> {}",
-                                Name(static_cast<runtime::rounds::Phase>(pair / campaign::kPhases)),
-                                Name(static_cast<runtime::rounds::Phase>(pair % campaign::kPhases))));
+    steps.push_back(
+        fmt::format("{} -> {}", Name(static_cast<runtime::rounds::Phase>(pair / sim::cores::Cores::kPhases)),
+                    Name(static_cast<runtime::rounds::Phase>(pair % sim::cores::Cores::kPhases))));
   }
   nlohmann::json json{{"runs", report.runs},
                       {"rounds", report.rounds},

@@ -10,6 +10,7 @@
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "runs/simulation_files.h"
+#include "sim/network.h"
 #include "sim/simulation.h"
 #include "workspace/koord_files.h"
 
@@ -23,6 +24,7 @@ struct Options {
   std::string file;
   std::string fleet;
   std::string spec;
+  std::string network;
   std::string trace;
   std::optional<uint64_t> seed;
   double duration = 0;
@@ -33,7 +35,39 @@ struct Options {
 
 nlohmann::json Finite(double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(nullptr); }
 
-std::string Summary(const sim::SimulationReport& report, double seconds) {
+// Of increasing numbers, that which so many of them do not exceed.
+double Quantile(const std::vector<double>& sorted, double share) {
+  return sorted[static_cast<size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
+std::string Summary(const sim::NetworkReport& network, const sim::SimulationReport& report,
+                    const std::vector<sim::FleetRobot>& robots) {
+  std::string text = fmt::format("  network: {}", base::Counted(network.datagrams, "datagram"));
+  if (report.rounds > 0) {
+    const double each =
+        static_cast<double>(network.bytes) / static_cast<double>(report.rounds * robots.size());
+    text += fmt::format(", {:.0f} bytes for each robot and round", each);
+  }
+  if (!network.waits.empty()) {
+    text += fmt::format(
+        "; a round is final after {:.3g} ms (half of them), {:.3g} ms (99 of 100), {:.3g} ms (all)",
+        1e3 * Quantile(network.waits, 0.5), 1e3 * Quantile(network.waits, 0.99), 1e3 * network.waits.back());
+  }
+  text += "\n";
+  constexpr size_t kMost = 20;
+  for (size_t i = 0; i < network.happenings.size() && i < kMost; ++i) {
+    const sim::Happening& h = network.happenings[i];
+    text += fmt::format("  {:9.3f} s  {}{}\n", h.time,
+                        h.robot < 0 ? "" : robots[static_cast<size_t>(h.robot)].name + " ", h.what);
+  }
+  if (network.happenings.size() > kMost)
+    text +=
+        fmt::format("  and {} more: `--json` and traces have them all\n", network.happenings.size() - kMost);
+  return text;
+}
+
+std::string Summary(const sim::SimulationReport& report, double seconds,
+                    const std::vector<sim::FleetRobot>& robots) {
   const bool real = seconds > 0.005;
   std::string text = fmt::format("  {:.6g} s in {}, {}{}\n", report.time,
                                  base::Counted(report.rounds, "round"), base::Counted(report.events, "event"),
@@ -53,6 +87,7 @@ std::string Summary(const sim::SimulationReport& report, double seconds) {
         fmt::format("  map: {} known, {} wrongly occupied, {} reachable but unknown\n",
                     base::Counted(report.known_cells, "cell"), report.wrong_cells, report.reachable_unknown);
   }
+  if (report.network) text += Summary(*report.network, report, robots);
   switch (report.ended) {
     case sim::Ending::kStopped:
       text += "  every robot stopped\n";
@@ -76,6 +111,21 @@ std::string Summary(const sim::SimulationReport& report, double seconds) {
   return text;
 }
 
+nlohmann::json ToJson(const sim::NetworkReport& network) {
+  nlohmann::json happenings = nlohmann::json::array();
+  for (const sim::Happening& h : network.happenings)
+    happenings.push_back({{"time", h.time}, {"robot", h.robot}, {"what", h.what}});
+  nlohmann::json json{{"datagrams", network.datagrams}, {"bytes", network.bytes},
+                      {"epochs", network.epochs},       {"fallbacks", network.fallbacks},
+                      {"happenings", happenings},       {"wait", nullptr}};
+  if (!network.waits.empty()) {
+    json["wait"] = {{"median", Quantile(network.waits, 0.5)},
+                    {"p99", Quantile(network.waits, 0.99)},
+                    {"max", network.waits.back()}};
+  }
+  return json;
+}
+
 nlohmann::json ToJson(const sim::SimulationReport& report) {
   nlohmann::json violations = nlohmann::json::array();
   for (const sim::Violation& v : report.violations)
@@ -94,18 +144,25 @@ nlohmann::json ToJson(const sim::SimulationReport& report) {
       {"plans", report.plans},
       {"map",
        {{"known", report.known_cells}, {"wrong", report.wrong_cells}, {"missing", report.reachable_unknown}}},
-      {"log", report.log}};
+      {"log", report.log},
+      {"network", report.network ? ToJson(*report.network) : nlohmann::json(nullptr)}};
 }
 
 ExitStatus Run(const Options& options) {
   workspace::Session session;
-  const runs::SimulationFiles files = runs::FindSimulationFiles(options.file, options.spec, options.fleet);
+  runs::SimulationFiles files = runs::FindSimulationFiles(options.file, options.spec, options.fleet);
   const auto loaded = workspace::LoadKoord({files.program, files.spec, true}, session);
   sim::Fleet fleet;
   if (loaded) {
     const auto file = workspace::ReadSource(files.fleet, session);
     if (!file) PrintFailure("a simulation needs a fleet: robots, models and a world; see docs/simulation.md");
     if (file) fleet = sim::ReadFleet(session.sources, *file, session.diagnostics);
+  }
+  sim::NetworkFaults network;
+  files.network = options.network;
+  if (!options.network.empty() && !session.diagnostics.has_errors()) {
+    if (const auto file = workspace::ReadSource(options.network, session))
+      network = sim::ReadNetwork(session.sources, *file, fleet, session.diagnostics);
   }
   const auto finish_early = [&](ExitStatus status) {
     if (options.json) {
@@ -123,6 +180,7 @@ ExitStatus Run(const Options& options) {
   simulation.seed = options.seed.value_or(fleet.seed.value_or(1));
   simulation.duration = options.duration;
   simulation.jobs = options.jobs;
+  if (!options.network.empty()) simulation.network = &network;
   runs::KeepTexts(files, session, simulation);
   std::optional<trace::Writer> writer;
   if (!options.trace.empty()) {
@@ -176,7 +234,7 @@ ExitStatus Run(const Options& options) {
     return status;
   }
   Print(fmt::format("{}: {}, seed {}\n{}", files.program, base::Counted(fleet.robots.size(), "robot"),
-                    simulation.seed, Summary(report, seconds)));
+                    simulation.seed, Summary(report, seconds, fleet.robots)));
   if (written && writer) Print(fmt::format("trace: {}\n", options.trace));
   PrintDiagnostics(session.sources, session.diagnostics);
   return status;
@@ -193,6 +251,9 @@ void AddSimulateVerb(CLI::App& app, ExitStatus& status) {
       .Required();
   verb.Option("--fleet", options->fleet, "the fleet, if it is not beside the program");
   verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
+  verb.Option(
+      "--network", options->network,
+      "let the robots agree over a network that loses and robots that fail, as this file says (TOML)");
   verb.Option("--seed", options->seed, "of everything that is random; default: the fleet's, or 1");
   verb.Option("--duration", options->duration, "seconds; default: as the fleet says").Between(1e-3, 1e7);
   verb.Option("--trace", options->trace, "write everything that happens into this file (MCAP)");
@@ -204,6 +265,7 @@ void AddSimulateVerb(CLI::App& app, ExitStatus& status) {
       "  rondo simulate examples/koord/mapping --seed 1 --trace mapping.mcap\n"
       "  rondo plot mapping.mcap --map --svg map.svg\n"
       "  rondo replay mapping.mcap\n"
+      "  rondo simulate examples/koord/lineform --network examples/koord/radio.toml\n"
       "\n"
       "Every invariant, assumption and summary is checked while the program runs.\n"
       "exit status: 0 nothing was violated, 1 something was, 3 not everything could be checked, or interrupted");

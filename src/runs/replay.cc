@@ -10,6 +10,7 @@
 #include "runs/execution_file.h"
 #include "runs/run_file.h"
 #include "sim/draw/history.h"
+#include "sim/network.h"
 #include "sim/simulation.h"
 #include "trace/reader.h"
 #include "workspace/koord_files.h"
@@ -122,6 +123,14 @@ Replayed ReplayTrace(const std::string& bytes, workspace::Session& session, cons
   auto writer = trace::Writer::Open(path.string());
   if (!writer.ok())
     return {false, fmt::format("cannot write `{}`: {}", path.string(), writer.error().message)};
+  sim::NetworkFaults network;
+  if (run.contains("network")) {
+    options.network_text = sim::TextOf(run, "network");
+    const diag::FileId text = session.sources.Add("network", options.network_text);
+    network = sim::ReadNetwork(session.sources, text, fleet, session.diagnostics);
+    if (session.diagnostics.has_errors()) return {false, "the network that the trace keeps cannot be used"};
+    options.network = &network;
+  }
   sim::SimulationReport report;
   {
     options.stop = replay.stop;

@@ -26,9 +26,10 @@ void KeepTexts(const SimulationFiles& files, const workspace::Session& session,
   for (size_t f = 0; f < session.sources.size(); ++f) {
     const diag::FileId id(f);
     const std::string path(session.sources.path(id));
-    std::string& text = path == files.program ? options.program
-                        : path == files.fleet ? options.fleet
-                                              : options.spec;
+    std::string& text = path == files.program   ? options.program
+                        : path == files.fleet   ? options.fleet
+                        : path == files.network ? options.network_text
+                                                : options.spec;
     text = session.sources.text(id);
   }
 }

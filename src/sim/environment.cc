@@ -20,33 +20,47 @@ uint32_t Run::At(const Port& port, size_t robot) const {
 
 void Run::Sense() {
   for (size_t r = 0; r < bodies_.size(); ++r) {
-    const Body& body = *bodies_[r];
     for (const Port& port : ports_) {
       Word* at = state_.data() + At(port, r);
-      const auto point = [&](const Point& p) {
-        for (size_t i = 0; i < 3; ++i) at[i] = FromFloat(p[i] + 0.0);
-      };
-      switch (port.role) {
-        case PortRole::kPosition:
-          point(body.position());
-          break;
-        case PortRole::kVelocity:
-          point(body.velocity());
-          break;
-        case PortRole::kHeading:
-          *at = FromFloat(body.yaw() + 0.0);
-          break;
-        case PortRole::kReached:
-          *at = body.reached();
-          break;
-        case PortRole::kScans:
-          *at = team_->heap().Intern(scans_[r]);
-          break;
-        case PortRole::kTarget:
-        case PortRole::kPath:
-          break;
-      }
+      if (port.role == PortRole::kScans)
+        *at = team_->heap().Intern(scans_[r]);
+      else
+        Sense(port, r, team_->heap(), at);
     }
+  }
+}
+
+// What a sensor of a robot reads now.
+void Run::Sense(const Port& port, size_t r, Heap& heap, Word* at) const {
+  const Body& body = *bodies_[r];
+  const auto point = [&](const Point& p) {
+    for (size_t i = 0; i < 3; ++i) at[i] = FromFloat(p[i] + 0.0);
+  };
+  switch (port.role) {
+    case PortRole::kPosition:
+      point(body.position());
+      break;
+    case PortRole::kVelocity:
+      point(body.velocity());
+      break;
+    case PortRole::kHeading:
+      *at = FromFloat(body.yaw() + 0.0);
+      break;
+    case PortRole::kReached:
+      *at = body.reached();
+      break;
+    case PortRole::kScans: {
+      std::vector<Word> words;
+      for (const Seen& seen : seen_[r]) {
+        for (const double x : seen.from) words.push_back(FromFloat(x + 0.0));
+        words.push_back(EncodeRays(heap, seen.rays));
+      }
+      *at = heap.Intern(words);
+      break;
+    }
+    case PortRole::kTarget:
+    case PortRole::kPath:
+      break;
   }
 }
 
@@ -55,38 +69,57 @@ uint64_t Run::Every(double period, double step) {
   return std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(period / step)));
 }
 
+void Run::FindPeriods() {
+  Periods& p = periods_;
+  p.dt = fleet_.delta / static_cast<double>(Every(fleet_.delta, fleet_.step));
+  p.monitor = Every(fleet_.monitor, p.dt);
+  p.pose = Every(1 / fleet_.pose_rate, p.dt);
+  p.scan = Every(1 / fleet_.lidar.rate, p.dt);
+  // Small teams are looked at after every step: fast robots are through each other soon.
+  p.touch = bodies_.size() <= 100 ? 1 : p.monitor;
+  p.scans =
+      std::any_of(ports_.begin(), ports_.end(), [](const Port& q) { return q.role == PortRole::kScans; });
+  report_.observed_every = static_cast<double>(p.touch) * p.dt;
+}
+
+// Is something looked at after this step?
+bool Run::Due(uint64_t step) const {
+  const Periods& p = periods_;
+  return step % p.monitor == 0 || step % p.pose == 0 || step % p.touch == 0 ||
+         (p.scans && step % p.scan == 0);
+}
+
+// Lets `n` steps pass, from t until `now`; nothing is due between them. `last`: everything is looked at
+// behind them.
+bool Run::Pass(uint64_t n, double t, double now, bool last) {
+  const Periods& p = periods_;
+  if (!Move(n, p.dt, t)) return false;
+  step_ += n;
+  report_.time = now;
+  if (step_ % p.pose == 0) {
+    for (size_t r = 0; r < bodies_.size(); ++r) recorder_.Pose(now, r, *bodies_[r]);
+  }
+  if (p.scans && step_ % p.scan == 0) Scan(now);
+  if (step_ % p.touch == 0 || last) Observe(now);
+  if ((step_ % p.monitor == 0 || last) && settled_at_ >= 0) {
+    Sense();
+    monitor_->During(now, state_, settled_);
+  }
+  return true;
+}
+
 void Run::Environment(double t) {
   const uint64_t steps = Every(fleet_.delta, fleet_.step);
-  const double dt = fleet_.delta / static_cast<double>(steps);
-  const uint64_t monitor = Every(fleet_.monitor, dt);
-  const uint64_t pose = Every(1 / fleet_.pose_rate, dt);
-  const uint64_t scan = Every(1 / fleet_.lidar.rate, dt);
-  // Small teams are looked at after every step: fast robots are through each other soon.
-  const uint64_t touch = bodies_.size() <= 100 ? 1 : monitor;
-  report_.observed_every = static_cast<double>(touch) * dt;
-  const bool scans =
-      std::any_of(ports_.begin(), ports_.end(), [](const Port& p) { return p.role == PortRole::kScans; });
   settled_ = state_;
+  settled_at_ = t;
   for (auto& s : scans_) s.clear();
   for (uint64_t i = 0; i < steps;) {
     // Up to the next instant at which something is looked at.
     uint64_t n = 1;
-    const auto due = [&](uint64_t every) { return (step_ + n) % every == 0; };
-    while (i + n < steps && !due(monitor) && !due(pose) && !due(touch) && !(scans && due(scan))) ++n;
-    if (!Move(n, dt, t + static_cast<double>(i) * dt)) return;
+    while (i + n < steps && !Due(step_ + n)) ++n;
+    const auto at = [&](uint64_t k) { return t + static_cast<double>(k) * periods_.dt; };
+    if (!Pass(n, at(i), at(i + n), i + n == steps)) return;
     i += n;
-    step_ += n;
-    const double now = t + static_cast<double>(i) * dt;
-    report_.time = now;
-    if (step_ % pose == 0) {
-      for (size_t r = 0; r < bodies_.size(); ++r) recorder_.Pose(now, r, *bodies_[r]);
-    }
-    if (scans && step_ % scan == 0) Scan(now);
-    if (step_ % touch == 0 || i == steps) Observe(now);
-    if (step_ % monitor == 0 || i == steps) {
-      Sense();
-      monitor_->During(now, state_, settled_);
-    }
   }
   report_.time = t + fleet_.delta;
 }
@@ -152,6 +185,11 @@ void Run::Scan(double now) {
     recorder_.Scan(now, r, all[r], bodies_[r]->yaw(), 1 / fleet_.lidar.rate);
     for (const double x : bodies_[r]->position()) scans_[r].push_back(FromFloat(x + 0.0));
     scans_[r].push_back(EncodeRays(team_->heap(), all[r]));
+    if (networked_ == nullptr) continue;
+    // Of a round; where rounds take longer, or do not come, of the last seconds that one should take.
+    std::erase_if(seen_[r], [&](const Seen& seen) { return seen.time <= now - fleet_.delta; });
+    seen_[r].push_back({now, bodies_[r]->position(), std::move(all[r])});
+    if (settled_at_ < 0) scans_[r].clear();
   }
 }
 

@@ -25,6 +25,14 @@ std::vector<bool> Run::Reachable(const GridMap& map, const World& world, const s
 void Run::Finish() {
   report_.violations = monitor_->violations();
   report_.plans = functions_.plans();
+  if (networked_ != nullptr) {
+    for (Violation& v : networked_->violations()) report_.violations.push_back(std::move(v));
+    report_.plans = networked_->plans();
+    std::vector<Happening> happenings;
+    if (report_.network) happenings = std::move(report_.network->happenings);
+    report_.network = networked_->Report();
+    report_.network->happenings = std::move(happenings);
+  }
   if (const auto map = SharedMap()) {
     std::vector<Point> starts;
     for (const FleetRobot& robot : fleet_.robots) starts.push_back(robot.position);

@@ -30,12 +30,7 @@ void Run::Round(uint64_t k) {
       case RoundExecution::Ran::kNoLock:
         break;
       case RoundExecution::Ran::kFailed:
-        diagnostics_
-            .Report(Kind::kKoordFault, round.fault_span(),
-                    fmt::format("robot {} fails at t = {:.6g} s: {}", r, t, Describe(round.fault())))
-            .Under(fmt::format("in event `{}`", team_->events()[event].def->name));
-        recorder_.Event(t, {{"event", "fault"}, {"robot", r}, {"what", Describe(round.fault())}});
-        report_.ended = Ending::kFailed;
+        Fails(r, {event, round.fault(), round.fault_span()}, t);
         return;
     }
   }
@@ -43,11 +38,7 @@ void Run::Round(uint64_t k) {
   ++report_.rounds;
   monitor_->Summary(t);
   Command(round.writes(), t);
-  for (const auto& [robot, text] : functions_.TakeLog()) {
-    recorder_.Event(t, {{"event", "log"}, {"robot", robot}, {"text", text}});
-    report_.log.push_back(fmt::format("[{:.6g} s] {}: {}", t, fleet_.robots[robot].name, text));
-    if (report_.log.size() > 20) report_.log.erase(report_.log.begin());
-  }
+  for (const auto& [robot, text] : functions_.TakeLog()) Say(t, robot, text);
   if (recorder_.on()) recorder_.Round(t, {{"round", k}, {"events", chosen}});
   monitor_->Settled(t, state_);
   Environment(t);
@@ -77,6 +68,23 @@ uint32_t Run::Choose(std::span<const uint32_t> enabled, uint64_t k, size_t robot
   return enabled[0];
 }
 
+void Run::Fails(size_t robot, const koord::node::Failure& failure, double t) {
+  diagnostics_
+      .Report(Kind::kKoordFault, failure.span,
+              fmt::format("robot {} fails at t = {:.6g} s: {}", robot, t, Describe(failure.fault)))
+      .Under(failure.event < team_->events().size()
+                 ? fmt::format("in event `{}`", team_->events()[failure.event].def->name)
+                 : std::string("in `init`"));
+  recorder_.Event(t, {{"event", "fault"}, {"robot", robot}, {"what", Describe(failure.fault)}});
+  report_.ended = Ending::kFailed;
+}
+
+void Run::Say(double t, size_t robot, const std::string& text) {
+  recorder_.Event(t, {{"event", "log"}, {"robot", robot}, {"text", text}});
+  report_.log.push_back(fmt::format("[{:.6g} s] {}: {}", t, fleet_.robots[robot].name, text));
+  if (report_.log.size() > 20) report_.log.erase(report_.log.begin());
+}
+
 // What was written to actuators goes to the bodies.
 void Run::Command(const std::vector<RoundExecution::Write>& writes, double t) {
   std::set<std::pair<size_t, size_t>> told;  // robot, port
@@ -91,19 +99,22 @@ void Run::Command(const std::vector<RoundExecution::Write>& writes, double t) {
       if (ports_[p].role == PortRole::kTarget || ports_[p].role == PortRole::kPath) told.emplace(robot, p);
     }
   }
-  for (const auto& [robot, p] : told) {
-    const Word* at = state_.data() + At(ports_[p], robot);
-    std::vector<Point> path;
-    if (ports_[p].role == PortRole::kPath)
-      path = DecodePath(team_->heap(), *at);
-    else
-      path = {{koord::semantics::ToFloat(at[0]), koord::semantics::ToFloat(at[1]),
-               koord::semantics::ToFloat(at[2])}};
-    if (ports_[p].role == PortRole::kPath || path != bodies_[robot]->path()) {
-      if (ports_[p].role == PortRole::kPath) recorder_.Path(t, robot, path);
-      bodies_[robot]->Follow(std::move(path));
-    }
+  for (const auto& [robot, p] : told)
+    Follow(ports_[p], robot, team_->heap(), state_.data() + At(ports_[p], robot), t);
+}
+
+// A path is a new command each time that it is written; a target is one if it is another.
+void Run::Follow(const Port& port, size_t robot, const Heap& heap, const Word* at, double t) {
+  std::vector<Point> path;
+  if (port.role == PortRole::kPath) {
+    path = DecodePath(heap, *at);
+    recorder_.Path(t, robot, path);
+  } else {
+    path = {{koord::semantics::ToFloat(at[0]), koord::semantics::ToFloat(at[1]),
+             koord::semantics::ToFloat(at[2])}};
+    if (path == bodies_[robot]->path()) return;
   }
+  bodies_[robot]->Follow(std::move(path));
 }
 
 // The shared map, if the program has one.

@@ -33,15 +33,23 @@ int Run::Find(const std::string& name) const {
   return -1;
 }
 
-bool Run::MakeTeam() {
+std::unique_ptr<Team> Run::NewTeam(Functions& functions) {
   koord::semantics::TeamOptions options;
   Heap heap;  // of the parameters
   options.robots = fleet_.robots.size();
-  options.hosted = [&](size_t f) { return functions_.Knows(f); };
+  options.hosted = [&](size_t f) { return functions.Knows(f); };
   const size_t before = diagnostics_.errors();
   ReadParameters(model_, fleet_, options, heap, diagnostics_);
-  team_ = Team::Make(model_, options, diagnostics_, std::move(heap));
-  if (team_ == nullptr || diagnostics_.errors() != before) return false;
+  std::unique_ptr<Team> team = Team::Make(model_, options, diagnostics_, std::move(heap));
+  if (team == nullptr || diagnostics_.errors() != before) return nullptr;
+  team->machine().CheckSummaries(true);
+  team->machine().SetHost(&functions);
+  return team;
+}
+
+bool Run::MakeTeam() {
+  team_ = NewTeam(functions_);
+  if (team_ == nullptr) return false;
   for (const auto& part : team_->unchecked()) {
     report_.unchecked.push_back(part.name);
     diagnostics_
@@ -49,8 +57,6 @@ bool Run::MakeTeam() {
                 fmt::format("runs are not checked against `{}`", part.name))
         .Under(part.reason);
   }
-  team_->machine().CheckSummaries(true);
-  team_->machine().SetHost(&functions_);
   return true;
 }
 
@@ -65,13 +71,16 @@ bool Run::MakeRobots() {
     bodies_.push_back(std::move(body));
     noise_.emplace_back(options_.seed * 0x9e3779b97f4a7c15U + r + 1);
     scans_.emplace_back();
+    seen_.emplace_back();
   }
   functions_.Attach(*team_, bodies_);
   contacts_ = std::make_unique<Contacts>(fleet_.world, radii);
   return true;
 }
 
-bool Run::Start() {
+// The state before `init`: what sensors read, what is declared, what the fleet says, what follows from
+// `assume initially`.
+bool Run::BeforeInit() {
   const size_t before = diagnostics_.errors();
   state_ = team_->blank();
   Sense();
@@ -118,7 +127,16 @@ bool Run::Start() {
   }
   if (diagnostics_.errors() != before) return false;
   machine.SetMemory(state_.data());
-  if (!run(team_->derived())) return false;
+  return run(team_->derived());
+}
+
+bool Run::Start() {
+  if (!BeforeInit()) return false;
+  if (options_.network != nullptr) {
+    store_ = std::make_unique<koord::node::Node>(*team_, 0, nullptr, 0);
+    store_->Reset(state_, 0);
+  }
+  // Over a network, `init` is a round that is yet to come; what it leads to is looked at here, too.
   if (!Initialise()) return false;
   monitor_ = std::make_unique<Monitor>(*team_, diagnostics_, [this](const Violation& v, bool first) {
     if (first) recorder_.Event(v.first, {{"event", "violation"}, {"what", v.what}, {"robot", v.robot}});
@@ -151,7 +169,7 @@ bool Run::Initialise() {
     for (auto it = undo.rbegin(); it != undo.rend(); ++it) memory[it->at] = it->before;
   }
   for (const auto& w : writes) state_[w.at] = w.value;
-  Command(writes, 0);
+  if (options_.network == nullptr) Command(writes, 0);
   return true;
 }
 
@@ -163,16 +181,18 @@ void Run::Record() {
                       {"model", fleet_.robots[r].model},
                       {"radius", bodies_[r]->radius()}});
   }
-  recorder_.Run({{"format", "rondo-trace/1"},
-                 {"engine", "simulate"},
-                 {"program_name", options_.program_name},
-                 {"program", options_.program},
-                 {"spec", options_.spec},
-                 {"fleet", options_.fleet},
-                 {"seed", options_.seed},
-                 {"duration", options_.duration},
-                 {"delta", fleet_.delta},
-                 {"robots", robots}});
+  json run{{"format", "rondo-trace/1"},
+           {"engine", "simulate"},
+           {"program_name", options_.program_name},
+           {"program", options_.program},
+           {"spec", options_.spec},
+           {"fleet", options_.fleet},
+           {"seed", options_.seed},
+           {"duration", options_.duration},
+           {"delta", fleet_.delta},
+           {"robots", robots}};
+  if (options_.network != nullptr) run["network"] = options_.network_text;
+  recorder_.Run(run);
   recorder_.World(fleet_);
   for (size_t r = 0; r < bodies_.size(); ++r) recorder_.Pose(0, r, *bodies_[r]);
 }

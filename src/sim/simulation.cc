@@ -20,8 +20,14 @@ SimulationReport Run::Go() {
   if (!MakeTeam() || diagnostics_.has_errors() || !MakeRobots() || !Start()) return std::move(report_);
   report_.ran = true;
   const double end = options_.duration > 0 ? options_.duration : fleet_.duration;
-  const auto rounds = static_cast<uint64_t>(std::ceil(end / fleet_.delta - 1e-9));
+  FindPeriods();
   report_.ended = Ending::kTime;
+  if (options_.network != nullptr) {
+    OverNetwork(end);
+    Finish();
+    return std::move(report_);
+  }
+  const auto rounds = static_cast<uint64_t>(std::ceil(end / fleet_.delta - 1e-9));
   for (uint64_t k = 0; k < rounds && report_.ended == Ending::kTime; ++k) {
     if (options_.stop.StopRequested()) {
       report_.ended = Ending::kInterrupted;

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,8 @@
 /// Simulates Koord programs on fleets of robots.
 namespace rondo::sim {
 
+struct NetworkFaults;
+
 /// Says how a simulation runs, beside what the fleet says.
 struct SimulationOptions {
   uint64_t seed = 1;
@@ -22,6 +25,10 @@ struct SimulationOptions {
   unsigned jobs = 0;    ///< threads; 0: one for each core. The result does not depend on it
   /// Holds what the trace keeps about where the run came from: texts of program, specification and fleet.
   std::string program, spec, fleet, program_name;
+  /// Lets the robots agree on their rounds over this network, by the cores that robots run; nullptr: they
+  /// share one store. `network_text` is the file that it comes from.
+  const NetworkFaults* network = nullptr;
+  std::string network_text;
   /// Receives, after each round, how far the run is, in seconds.
   std::function<void(double time, double end)> progress;
   base::StopToken stop;
@@ -47,6 +54,23 @@ struct Violation {
   uint64_t count = 0;
 };
 
+/// Tells something that happened to the team of a simulated network.
+struct Happening {
+  double time = 0;  ///< seconds
+  int robot = -1;   ///< -1: to all
+  std::string what;
+};
+
+/// Tells what the robots of a simulation did over their network.
+struct NetworkReport {
+  uint64_t datagrams = 0;  ///< sent, each receiver counted
+  uint64_t bytes = 0;
+  uint64_t epochs = 0;
+  uint64_t fallbacks = 0;     ///< how often a lease ended
+  std::vector<double> waits;  ///< seconds from what a robot said to the end of its round, in increasing order
+  std::vector<Happening> happenings;
+};
+
 /// Holds what happened in a simulation.
 struct SimulationReport {
   bool ran = false;  ///< false: the program cannot be simulated, which was reported
@@ -68,7 +92,8 @@ struct SimulationReport {
   uint64_t known_cells = 0;  ///< of the shared map, if there is one: cells that are not unknown
   uint64_t wrong_cells = 0;
   uint64_t reachable_unknown = 0;
-  std::vector<std::string> log;  ///< what robots wrote to streams: the last lines
+  std::optional<NetworkReport> network;  ///< if there was one
+  std::vector<std::string> log;          ///< what robots wrote to streams: the last lines
 };
 
 /// Runs a Koord program on a simulated fleet, in virtual time. Everything that happens is written to the

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "koord/check/check.h"
 #include "koord/syntax/parser.h"
+#include "sim/network.h"
 
 namespace rondo::sim {
 namespace {
@@ -162,6 +165,77 @@ TEST(Simulation, EndingsHaveNames) {
   EXPECT_EQ(Name(Ending::kTime), "time");
   EXPECT_EQ(Name(Ending::kInterrupted), "interrupted");
   EXPECT_EQ(Name(Ending::kFailed), "failed");
+}
+
+// -- over a network
+
+const char* const kCount =
+    "allwrite:\n    int total = 0\nlocal:\n    int n = 0\n    stream out\n"
+    "invariant below: total <= 1000\n"
+    "Add:\n    eff:\n        atomic:\n            total = total + 1\n        n = n + 1\n        out << n\n";
+
+Outcome Over(const std::string& text, Fleet fleet, const NetworkFaults& network) {
+  SimulationOptions options;
+  options.network = &network;
+  return Play(text, fleet, options);
+}
+
+TEST(NetworkedSimulation, ARoundIsOverBeforeTheNextOneBegins) {
+  const Outcome outcome = Over(kGo, Masses(3, 1), {});
+  ASSERT_TRUE(outcome.report.network);
+  EXPECT_EQ(outcome.report.rounds, 9U);  // the first begins when all have said that they are there
+  EXPECT_GT(outcome.report.network->datagrams, 0U);
+  EXPECT_EQ(outcome.report.network->fallbacks, 0U);
+  EXPECT_LT(outcome.report.network->waits.back(), 0.01);
+  EXPECT_TRUE(outcome.messages.empty());
+}
+
+TEST(NetworkedSimulation, LossMakesRoundsLongerAndLosesNone) {
+  NetworkFaults network;
+  network.conditions.loss = 0.3;
+  const Outcome outcome = Over(kCount, Masses(5, 4), network);
+  EXPECT_GE(outcome.report.rounds, 30U);
+  EXPECT_EQ(outcome.report.events, outcome.report.rounds);  // one robot at a time holds the lock
+  EXPECT_GT(outcome.report.network->waits.back(), 0.01);
+  EXPECT_TRUE(outcome.messages.empty());
+}
+
+// What a robot says counts when its round is final, once, and only if it got the lock.
+TEST(NetworkedSimulation, RobotsSayWhatTheyDidAndNoMore) {
+  NetworkFaults network;
+  network.conditions.loss = 0.3;
+  network.conditions.duplicate = 0.5;
+  const Outcome outcome = Over(kCount, Masses(2, 1.2), network);
+  EXPECT_EQ(outcome.report.log.size(), outcome.report.events);
+  std::set<std::string> said(outcome.report.log.begin(), outcome.report.log.end());
+  EXPECT_EQ(said.size(), outcome.report.log.size());
+}
+
+TEST(NetworkedSimulation, ARobotThatIsGoneIsGivenUpOrStopsAll) {
+  NetworkFaults network;
+  network.faults = {{cores::FaultKind::kCrash, 1'000'000'000, 3'000'000'000, 2, 0, 0}};
+  Fleet fleet = Masses(3, 6);
+  fleet.rounds.on_loss = runtime::rounds::OnLoss::kHalt;
+  const Outcome halted = Over(kGo, fleet, network);
+  EXPECT_LT(halted.report.rounds, 12U);
+  EXPECT_GE(halted.report.network->fallbacks, 2U);
+  fleet.rounds.on_loss = runtime::rounds::OnLoss::kEvict;
+  const Outcome evicted = Over(kGo, fleet, network);
+  EXPECT_GT(evicted.report.rounds, 30U);
+  EXPECT_GE(evicted.report.network->epochs, 3U);  // with all, without robot 2, with all again
+}
+
+TEST(NetworkedSimulation, ManyRobotsAgreeOnABadRadio) {
+  NetworkFaults network;
+  network.conditions.loss = 0.3;
+  network.conditions.most = 20'000'000;
+  EXPECT_GE(Over(kGo, Masses(16, 5), network).report.rounds, 20U);
+}
+
+TEST(NetworkedSimulation, AnEventWithoutAValueIsAnError) {
+  const Outcome outcome = Over(Local("        n = n + 1 / (2 - n) - 1 / (2 - n) + 1\n"), Masses(1), {});
+  EXPECT_EQ(outcome.report.ended, Ending::kFailed);
+  ASSERT_EQ(outcome.messages.size(), 1U);
 }
 
 }  // namespace

@@ -176,6 +176,32 @@ def runs(rondo, folder):
     check(not json.loads(done.stdout)["reach"][0]["found"], "too few rounds")
 
 
+def networks(rondo, folder):
+    """Robots that agree over a network: the same run again, what happens to the team, mistakes in the file."""
+    radio = "examples/koord/radio.toml"
+    trace = folder / "network.mcap"
+    status, report = simulate(rondo, "examples/koord/lineform", "--duration", 20, "--network", radio, "--trace", trace)
+    check(status == 0, f"a network: {report['diagnostics']}")
+    network = report["network"]
+    check(report["rounds"] > 15 and network["fallbacks"] >= 15, "rounds until the crash, and everybody falls back")
+    check([h["what"] for h in network["happenings"]][:1] == ["crashes"], f"a crash first: {network['happenings'][:1]}")
+    done = run(rondo, "replay", trace)
+    check(done.returncode == 0 and "bit for bit" in done.stdout, f"replay of a network: {done.stdout}")
+    _, alone = simulate(rondo, "examples/koord/lineform", "--duration", 20)
+    check(alone["network"] is None and alone["rounds"] == 40, "without a network")
+    for text, message in [("loss = 2", "it may have network, fault"), ("[network]\nloss = 2", "`loss`"),
+                          ("[[fault]]\nkind = \"crush\"", "`kind` cannot be this"),
+                          ("[[fault]]\nkind = \"crash\"\nrobot = \"drone99\"", "`robot` cannot be this"),
+                          ("[[fault]]\nkind = \"crash\"\nrobot = 16", "`robot`"), ("[network", "TOML")]:
+        bad = folder / "bad.toml"
+        bad.write_text(text)
+        done = run(rondo, "simulate", "examples/koord/lineform", "--network", bad)
+        check(done.returncode == 1 and "bad.toml" in done.stderr and message in done.stderr,
+              f"{text!r}: {done.returncode} {done.stderr}")
+    done = run(rondo, "simulate", "examples/koord/lineform", "--network", folder / "none.toml")
+    check(done.returncode == 1 and "none.toml" in done.stderr, "a network file that is not there")
+
+
 def main():
     rondo = str(pathlib.Path(sys.argv[1]).resolve())
     os.chdir(ROOT)
@@ -186,6 +212,7 @@ def main():
         refused(rondo, folder)
         interrupted(rondo, folder)
         runs(rondo, folder)
+        networks(rondo, folder)
     print(f"{checks[0]} passed, {checks[1]} failed")
     return 1 if checks[1] else 0
 

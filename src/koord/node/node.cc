@@ -21,11 +21,16 @@ Node::Node(semantics::Team& team, uint32_t robot, Sensors* sensors, uint64_t see
       seed_(seed),
       cells_(team),
       transition_(team),
-      state_(team.blank()) {}
+      state_(team.blank()) {
+  team_.machine().KeepSaid(true);
+}
 
 void Node::Reset(std::span<const Word> state, uint64_t seed) {
   state_.assign(state.begin(), state.end());
   seed_ = seed;
+  offered_.clear();
+  applied_ = {};
+  failed_.reset();
 }
 
 void Node::EncodeEffect(const Effect& effect, Bytes& out) const {
@@ -55,6 +60,12 @@ void Node::EncodeEffect(const Effect& effect, Bytes& out) const {
   for (const auto& [cell, words] : written) cells_.Encode(cell, words, writer);
 }
 
+size_t Node::First(uint64_t round, std::span<const Effect> effects) const {
+  if (effects.empty()) return 0;
+  if (choose_) return choose_(round, robot_, effects);
+  return base::Mixed(seed_ ^ base::Mixed(round * 1024 + robot_)) % effects.size();
+}
+
 void Node::Contribute(uint64_t round, Bytes& out) {
   // The robot sees the world as it is now; the store gets that with the frame.
   std::vector<Word> seen = state_;
@@ -73,16 +84,23 @@ void Node::Contribute(uint64_t round, Bytes& out) {
     transition_.Prepare(state_, robot_);
   const auto effects = transition_.Of(robot_);
   runtime::rounds::Contribution contribution;
-  std::vector<Bytes> encoded;
-  encoded.reserve(effects.size());
-  const size_t first =
-      effects.empty() ? 0 : base::Mixed(seed_ ^ base::Mixed(round * 1024 + robot_)) % effects.size();
-  for (size_t i = 0; i < effects.size() && i < runtime::rounds::kMostAlternatives; ++i) {
+  offered_.clear();
+  offered_.reserve(effects.size());
+  failed_.reset();
+  const size_t first = First(round, effects);
+  if (first < effects.size() && effects[first].fault != semantics::Fault::kNone)
+    failed_ = {round == 0 ? kInit : effects[first].event, effects[first].fault, effects[first].fault_span};
+  const size_t count =
+      first < effects.size() ? std::min(effects.size(), runtime::rounds::kMostAlternatives) : 0;
+  for (size_t i = 0; i < count; ++i) {
     const Effect& effect = effects[(first + i) % effects.size()];
     if (effect.fault != semantics::Fault::kNone) continue;
-    encoded.emplace_back();
-    EncodeEffect(effect, encoded.back());
-    contribution.alternatives.push_back({effect.event, effect.locks, encoded.back()});
+    Offered& offered = offered_.emplace_back();
+    offered.event = effect.event;
+    EncodeEffect(effect, offered.effect);
+    for (const semantics::Said& said : effect.said)
+      offered.said.push_back(team_.ShowLogged(said.type, said.value));
+    contribution.alternatives.push_back({effect.event, effect.locks, offered.effect});
     if (!effect.locks) break;  // nothing can take it away
   }
   std::swap(seen, state_);
@@ -90,8 +108,9 @@ void Node::Contribute(uint64_t round, Bytes& out) {
   runtime::rounds::Encode(contribution, out);
 }
 
-// Reads cells and, if there is a state, puts them there.
-bool Node::Reads(View bytes, uint32_t robot, bool inputs, std::vector<Word>* state) const {
+// Reads cells and, if there is a state, puts them there; `cells` gets which they were.
+bool Node::Reads(View bytes, uint32_t robot, bool inputs, std::vector<Word>* state,
+                 std::vector<Cell>* cells) const {
   if (bytes.empty()) return inputs;  // nothing new
   Reader reader(bytes);
   const size_t count = reader.Number(bytes.size());
@@ -101,6 +120,7 @@ bool Node::Reads(View bytes, uint32_t robot, bool inputs, std::vector<Word>* sta
     const Cell cell = cells_.Decode(reader, words);
     if (!reader.ok() || (cells_.Kind(cell) == VariableKind::kSensor) != inputs) return false;
     if (state != nullptr) std::ranges::copy(words, state->begin() + cells_.Address(cell, robot));
+    if (cells != nullptr) cells->push_back(cell);
   }
   return reader.Complete();
 }
@@ -114,8 +134,18 @@ bool Node::Accepts(uint32_t robot, View inputs, std::span<const Alternative> alt
 
 void Node::Apply(uint64_t, std::span<const runtime::rounds::Turn> turns) {
   for (const auto& turn : turns) Reads(turn.inputs, turn.robot, true, &state_);
+  applied_ = {};
+  applied_.events.resize(team_.robots());
   for (const auto& turn : turns) {
-    if (turn.does != nullptr) Reads(turn.does->effect, turn.robot, false, &state_);
+    if (turn.does == nullptr) continue;
+    const bool own = turn.robot == robot_;
+    Reads(turn.does->effect, turn.robot, false, &state_, own ? &applied_.written : nullptr);
+    applied_.events[turn.robot] = turn.does->event;
+    if (!own) continue;
+    const auto same = [&](const Offered& o) {
+      return o.event == turn.does->event && std::ranges::equal(o.effect, turn.does->effect);
+    };
+    if (const auto it = std::ranges::find_if(offered_, same); it != offered_.end()) applied_.said = it->said;
   }
   if (team_.heap().words_in_use() < collect_at_) return;
   const std::span<const Word> states[] = {state_};
@@ -150,6 +180,7 @@ bool Node::Load(View bytes) {
   }
   if (!reader.Complete()) return false;
   state_ = std::move(state);
+  applied_ = {};
   return true;
 }
 

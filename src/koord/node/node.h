@@ -1,6 +1,9 @@
 #pragma once
 
-#include <memory>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "koord/node/cells.h"
 #include "koord/semantics/program_transition.h"
@@ -17,6 +20,25 @@ class Sensors {
   virtual void Read(size_t robot, uint64_t round, Cell cell, std::span<Word> words) = 0;
 };
 
+/// Tells what the round did that a node applied last; nothing if its store came from another robot.
+struct Applied {
+  std::vector<std::optional<uint32_t>> events;  ///< by robot; nothing: it skipped
+  std::vector<Cell> written;                    ///< by this robot
+  std::vector<std::string> said;                ///< by this robot, to streams
+};
+
+/// Says why an event has no value, and where in the program.
+constexpr uint32_t kInit = UINT32_MAX;  ///< stands for `init` where an event is meant
+struct Failure {
+  uint32_t event;
+  semantics::Fault fault;
+  diag::Span span;
+};
+
+/// Chooses which of these effects of its enabled events a robot would like best; their number: it skips.
+using Choose =
+    std::function<size_t(uint64_t round, size_t robot, std::span<const semantics::Effect> effects)>;
+
 /// Runs one robot of a program. Round 0 is `init`. Events that cannot be completed are skipped.
 class Node : public runtime::rounds::Program {
  public:
@@ -28,6 +50,8 @@ class Node : public runtime::rounds::Program {
   /// Begins again with this state, the one before `init`.
   void Reset(std::span<const Word> state, uint64_t seed);
   void SetSensors(Sensors* sensors) { sensors_ = sensors; }
+  /// Sets who chooses; without one, the seed does.
+  void SetChoose(Choose choose) { choose_ = std::move(choose); }
 
   void Contribute(uint64_t round, runtime::codec::Bytes& out) override;
   bool Accepts(uint32_t robot, runtime::codec::View inputs,
@@ -37,11 +61,16 @@ class Node : public runtime::rounds::Program {
   bool Load(runtime::codec::View bytes) override;
 
   const std::vector<Word>& state() const { return state_; }
+  const Applied& applied() const { return applied_; }
+  /// Returns why the event that the robot would have liked best in this round is left out; nothing if it is not.
+  const std::optional<Failure>& failed() const { return failed_; }
   const Cells& cells() const { return cells_; }
 
  private:
+  size_t First(uint64_t round, std::span<const semantics::Effect> effects) const;
   void EncodeEffect(const semantics::Effect& effect, runtime::codec::Bytes& out) const;
-  bool Reads(runtime::codec::View bytes, uint32_t robot, bool inputs, std::vector<Word>* state) const;
+  bool Reads(runtime::codec::View bytes, uint32_t robot, bool inputs, std::vector<Word>* state,
+             std::vector<Cell>* cells = nullptr) const;
 
   semantics::Team& team_;
   uint32_t robot_;
@@ -50,6 +79,15 @@ class Node : public runtime::rounds::Program {
   Cells cells_;
   semantics::ProgramTransition transition_;
   std::vector<Word> state_;
+  Choose choose_;
+  struct Offered {
+    uint32_t event;
+    runtime::codec::Bytes effect;
+    std::vector<std::string> said;
+  };
+  std::vector<Offered> offered_;  // by this robot, in this round
+  Applied applied_;
+  std::optional<Failure> failed_;
   size_t collect_at_ = 1'000'000;  // words of the heap
 };
 

@@ -28,6 +28,7 @@ Effect& ProgramTransition::Next(size_t robot) {
   effect.own.clear();
   effect.shared.clear();
   effect.words.clear();
+  effect.said.clear();
   return effect;
 }
 
@@ -64,6 +65,7 @@ void ProgramTransition::Run(size_t robot, uint32_t event, uint32_t entry, Effect
   effect.fault = machine.Run(entry, robot, false) ? Fault::kNone : machine.fault();
   effect.fault_span = machine.fault_span();
   effect.locks = machine.locked();
+  effect.said = machine.said();
   const uint32_t first = team_.layout().shared_words();
   effect.idle = !effect.locks && machine.units().empty();
   for (const Machine::Write& w : machine.writes()) {
@@ -166,6 +168,7 @@ void ProgramTransition::RunInits(size_t robot, Effect& effect) {
       if (std::find(units.begin(), units.end(), unit) == units.end()) units.push_back(unit);
     }
     stopped = stopped || machine.stopped();
+    effect.said.insert(effect.said.end(), machine.said().begin(), machine.said().end());
     if (good || effect.fault != Fault::kNone) continue;
     effect.fault = machine.fault();
     effect.fault_span = machine.fault_span();

@@ -28,6 +28,7 @@ struct Effect {
   };
   std::vector<Shared> shared;  ///< to variables and cells that every robot may write
   std::vector<Word> words;
+  std::vector<Said> said;  ///< to streams, if the machine keeps that (`Machine::KeepSaid`)
 };
 
 /// Tells who wrote a variable or cell last where several robots wrote different values to it.

@@ -163,7 +163,7 @@ void Core::Wake() {
   if (phase_ == Phase::kCommitted) at(round_start_ + settings_.delta);
   if (phase_ == Phase::kStored && now_ < not_before_) at(not_before_);
   if (Waits()) at(resend_at_);
-  if (wanted_) at(try_at_);
+  if (wanted_) at(std::max(try_at_, give_way_until_));
 }
 
 }  // namespace rondo::runtime::rounds

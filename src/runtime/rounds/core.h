@@ -143,6 +143,7 @@ class Core {
 
   // resend.cc
   void Progress();
+  Time SlowestRepetition() const;
   codec::Status MyStatus(bool asks, bool forwards) const;
   void SendStatus();
   void Serve(Member from, const codec::Status& status);
@@ -159,6 +160,7 @@ class Core {
   void TryHalt();
   Time Turn() const;
   Time Again() const;
+  void GiveWay(codec::Ballot other);
   void TryEpoch();
   void Ask();
   void Choose();
@@ -210,7 +212,9 @@ class Core {
   std::optional<Attempt> trial_;  // to decide the next epoch
   uint64_t highest_ballot_ = 0;
   Time try_at_ = 0;
-  uint32_t tries_ = 0;  // since it is wanted
+  Time tried_at_ = 0;        // the last attempt, or when one became wanted
+  Time give_way_until_ = 0;  // to the attempt of another
+  uint32_t tries_ = 0;       // since it is wanted
   bool wanted_ = false;
 
   std::array<uint64_t, 5> refused_{};

@@ -83,6 +83,18 @@ Time Core::Again() const {
   return std::min(try_at_, now_ + pause);
 }
 
+// Who hears of an attempt that goes before its own lets it go on: with many robots and a bad radio, none would
+// come to an end. Each robot gives way a little longer the more often it has tried, but not for ever: the other may
+// not hear everybody.
+void Core::GiveWay(codec::Ballot other) {
+  if (trial_ && other < trial_->ballot()) return;
+  const Time longest = tried_at_ + (settings_.patience << std::min<uint32_t>(tries_, 5));
+  // Of few robots one comes to an end soon; of many, all have to have missed several repetitions.
+  const Time usual =
+      std::min<Time>(settings_.patience / 2, SlowestRepetition() * settings_.robots * settings_.robots / 16);
+  give_way_until_ = std::min(now_ + usual, longest);
+}
+
 void Core::TryEpoch() {
   if (!Wanted()) {
     wanted_ = false;
@@ -93,9 +105,11 @@ void Core::TryEpoch() {
     wanted_ = true;
     tries_ = 0;
     try_at_ = now_ + Turn();
+    tried_at_ = now_;
   }
-  if (now_ < try_at_) return;
+  if (now_ < try_at_ || now_ < give_way_until_) return;
   ++tries_;
+  tried_at_ = now_;
   try_at_ = now_ + settings_.patience / 2 + Turn();
   const uint64_t epoch = Epoch() + 1;
   const Ballot ballot{++highest_ballot_, settings_.self, settings_.incarnation};
@@ -125,6 +139,7 @@ void Core::On(Member from, const codec::Prepare& prepare) {
   if (!MayVote(prepare.epoch)) return;
   if (!voter_.Prepare(prepare.ballot))
     return Post(from.robot, codec::Refusal{prepare.epoch, *voter_.promised});
+  GiveWay(prepare.ballot);
   KeepRecord();
   if (disk_failed_) return;
   Post(from.robot,
@@ -133,6 +148,7 @@ void Core::On(Member from, const codec::Prepare& prepare) {
 
 void Core::On(Member from, const codec::Promise& promise) {
   if (!trial_ || promise.epoch != trial_->epoch() || promise.ballot != trial_->ballot()) return;
+  try_at_ = std::max(try_at_, now_ + settings_.patience / 2);
   if (trial_->Promised(from.robot, promise)) Choose();
 }
 
@@ -157,12 +173,14 @@ void Core::On(Member from, const codec::Accept& accept) {
   if (!MayVote(epoch)) return;
   if (!voter_.Accept(accept.ballot, accept.value))
     return Post(from.robot, codec::Refusal{epoch, *voter_.promised});
+  GiveWay(accept.ballot);
   KeepRecord();
   if (!disk_failed_) Post(from.robot, codec::Accepted{epoch, accept.ballot});
 }
 
 void Core::On(Member from, const codec::Accepted& accepted) {
   if (!trial_ || accepted.epoch != trial_->epoch() || accepted.ballot != trial_->ballot()) return;
+  try_at_ = std::max(try_at_, now_ + settings_.patience / 2);
   if (trial_->Accepted(from.robot)) Vote();
 }
 
@@ -203,6 +221,7 @@ void Core::Adopt(const Decision& decision) {
   highest_ballot_ = 0;
   trial_.reset();
   wanted_ = false;
+  give_way_until_ = 0;
   outputs_->push_back(Adopted{decision});
   Progress();
   if (rank_ < 0) {

@@ -13,6 +13,8 @@ void Core::Progress() {
   attempt_ = 0;
 }
 
+Time Core::SlowestRepetition() const { return std::max(settings_.resend, settings_.patience / 16); }
+
 bool Core::Waits() const { return phase_ != Phase::kCommitted || trial_; }
 
 codec::Status Core::MyStatus(bool asks, bool forwards) const {
@@ -47,7 +49,7 @@ void Core::SendStatus() {
 void Core::Repeat() {
   if (!Waits() || now_ < resend_at_) return;
   ++attempt_;
-  interval_ = std::min(2 * interval_, std::max(settings_.resend, settings_.patience / 16));
+  interval_ = std::min(2 * interval_, SlowestRepetition());
   resend_at_ = now_ + interval_;
   if (disk_failed_) KeepRecord();
   SendStatus();

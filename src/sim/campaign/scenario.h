@@ -1,41 +1,16 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "runtime/rounds/settings.h"
-#include "transport/simulated/network.h"
+#include "sim/cores/fault.h"
 
 /// What goes wrong in a run of a campaign.
 namespace rondo::sim::campaign {
 
-using transport::simulated::Time;
-
-/// Names what goes wrong for a while.
-enum class FaultKind : uint8_t {
-  kLoss,       ///< a share of all datagrams is lost
-  kDelay,      ///< datagrams take up to so long, in seconds
-  kDuplicate,  ///< a share of all datagrams comes twice
-  kCorrupt,    ///< a share of all datagrams is damaged
-  kOneWay,     ///< nothing comes from one robot to another
-  kCut,        ///< two robots do not hear each other
-  kAlone,      ///< nobody hears a robot, and it hears nobody
-  kCrash,      ///< a robot is gone, and comes back with its disk, if it has one
-  kForget,     ///< a robot is gone, and comes back without its disk
-  kPause,      ///< a robot stands still, and goes on as if nothing had been
-  kDiskFull,   ///< the disk of a robot takes nothing
-};
-std::string_view Name(FaultKind kind);
-
-/// Is one thing that goes wrong, from a moment on, for a while.
-struct Fault {
-  FaultKind kind = FaultKind::kLoss;
-  Time at = 0, length = 0;  ///< nanoseconds
-  uint32_t robot = 0, other = 0;
-  double amount = 0;  ///< a share, or seconds
-};
-/// Returns it in words: "from 0.52 s on, for 0.30 s: robots 0 and 2 do not hear each other".
-std::string Tell(const Fault& fault);
+using cores::Fault;
+using cores::FaultKind;
+using cores::Time;
 
 /// Holds everything that decides a run.
 struct Scenario {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "sim/cores/fault_file.h"
 #include "sim/fleet/tables.h"
 
 namespace rondo::sim::campaign {
@@ -15,13 +16,6 @@ namespace {
 
 Time Nanoseconds(double seconds) { return static_cast<Time>(std::llround(seconds * 1e9)); }
 std::string Seconds(Time time) { return fmt::format("{:.9f}", static_cast<double>(time) * 1e-9); }
-
-std::vector<std::string> Kinds() {
-  std::vector<std::string> names;
-  for (size_t k = 0; k <= static_cast<size_t>(FaultKind::kDiskFull); ++k)
-    names.emplace_back(Name(static_cast<FaultKind>(k)));
-  return names;
-}
 
 class Reader : Tables {
  public:
@@ -64,24 +58,10 @@ class Reader : Tables {
     s.patience = seconds("patience", s.patience);
     if (s.patience < 2 * s.delta && (t.get("patience") != nullptr || t.get("delta") != nullptr))
       Wrong(At(t), "`patience` must be at least two rounds (`delta`): robots are silent between rounds");
-    ForEach(t, "fault", [&](const toml::table& fault) { s.faults.push_back(ReadFault(fault, s)); });
+    ForEach(t, "fault", [&](const toml::table& fault) {
+      s.faults.push_back(cores::ReadFault(*this, fault, s.robots, {}));
+    });
     return s;
-  }
-
-  Fault ReadFault(const toml::table& t, const Scenario& s) {
-    Known(t, {"kind", "at", "length", "robot", "other", "amount"}, "a fault");
-    Fault f;
-    const std::vector<std::string> kinds = Kinds();
-    if (t.get("kind") == nullptr) Wrong(At(t), "the fault has no `kind`");
-    const std::string kind = Word(t, "kind", kinds[0], kinds);
-    f.kind = static_cast<FaultKind>(std::ranges::find(kinds, kind) - kinds.begin());
-    f.at = Nanoseconds(Number(t, "at", 0, 0, 1e6));
-    f.length = Nanoseconds(Number(t, "length", 0.1, 0, 1e6));
-    const double last = static_cast<double>(s.robots) - 1;
-    f.robot = static_cast<uint32_t>(Whole(t, "robot", 0, 0, last));
-    f.other = static_cast<uint32_t>(Whole(t, "other", 0, 0, last));
-    f.amount = Number(t, "amount", 0, 0, f.kind == FaultKind::kDelay ? 1000 : 1);
-    return f;
   }
 
   static constexpr size_t kMostRobots = 64;
@@ -107,11 +87,7 @@ std::string WriteScenario(const Scenario& s, const std::string& comment) {
       "stop_time = {}\npatience = {}\n",
       s.seed, s.robots, s.rounds, Name(s.on_loss), s.disks, Seconds(s.delta), Seconds(s.lease),
       Seconds(s.stop_time), Seconds(s.patience));
-  for (const Fault& f : s.faults) {
-    text += fmt::format(
-        "\n[[scenario.fault]]\nkind = \"{}\"\nat = {}\nlength = {}\nrobot = {}\nother = {}\namount = {:.17g}\n",
-        Name(f.kind), Seconds(f.at), Seconds(f.length), f.robot, f.other, f.amount);
-  }
+  for (const Fault& f : s.faults) text += "\n[[scenario.fault]]\n" + cores::WriteFault(f);
   return text;
 }
 

@@ -26,10 +26,10 @@ struct Outcome {
   std::string stuck;
   /// Says what a core itself found broken.
   std::string broken;
-  uint64_t digest = 0;            ///< of everything that happened: runs of one scenario have the same
-  std::vector<uint64_t> visited;  ///< pairs of phases that some core went through, by `kPhases` * from + to
+  uint64_t digest = 0;  ///< of everything that happened: runs of one scenario have the same
+  std::vector<uint64_t>
+      visited;  ///< pairs of phases that some core went through, as in `cores::Cores::visited`
 };
-constexpr size_t kPhases = 6;
 
 /// Holds what all runs of one program share: a compiled team for each robot.
 class Fleet {

@@ -12,6 +12,7 @@ namespace rondo::sim {
 namespace {
 
 using diag::Kind;
+using runtime::rounds::OnLoss;
 
 class Reader : Tables {
  public:
@@ -22,7 +23,8 @@ class Reader : Tables {
     const size_t before = diagnostics_.errors();
     const toml::table root = Root();
     if (diagnostics_.errors() != before) return std::move(fleet_);
-    Known(root, {"run", "world", "lidar", "map", "planner", "params", "initial", "robot"}, "a fleet file");
+    Known(root, {"run", "world", "lidar", "map", "planner", "params", "initial", "rounds", "robot"},
+          "a fleet file");
     if (const auto* run = Table(root, "run")) Run(*run);
     if (const auto* world = Table(root, "world")) ReadWorld(*world);
     if (const auto* lidar = Table(root, "lidar")) ReadLidar(*lidar);
@@ -39,6 +41,7 @@ class Reader : Tables {
     if (const auto* params = Table(root, "params")) Values(*params, fleet_.params);
     if (const auto* initial = Table(root, "initial")) Values(*initial, fleet_.initial);
     Robots(root);
+    ReadRounds(Table(root, "rounds"));
     return std::move(fleet_);
   }
 
@@ -102,6 +105,32 @@ class Reader : Tables {
 
   void Values(const toml::table& t, std::map<std::string, FleetValue>& values) {
     for (const auto& [key, node] : t) values[std::string(key.str())] = {ToJson(node), At(node)};
+  }
+
+  // What is not said follows from the length of a round.
+  void ReadRounds(const toml::table* t) {
+    FleetRounds& rounds = fleet_.rounds;
+    rounds.lease = rounds.patience = 5 * fleet_.delta;
+    rounds.stop_time = fleet_.delta;
+    if (t == nullptr) return;
+    Known(*t, {"on_loss", "disks", "lease", "stop_time", "patience"}, "`rounds`");
+    const std::string on_loss = Word(*t, "on_loss", "halt", {"halt", "wait", "evict"});
+    rounds.on_loss = on_loss == "wait" ? OnLoss::kWait : on_loss == "evict" ? OnLoss::kEvict : OnLoss::kHalt;
+    if (rounds.on_loss == OnLoss::kEvict && fleet_.robots.size() == 2)
+      Wrong(At(*t->get("on_loss")), "two robots have no majority without each other, so none can be evicted");
+    rounds.disks = Flag(*t, "disks", false);
+    rounds.lease = Number(*t, "lease", rounds.lease, 1e-3, 1e4);
+    rounds.stop_time = Number(*t, "stop_time", rounds.stop_time, 0, 1e4);
+    rounds.patience = Number(*t, "patience", rounds.patience, 1e-3, 1e4);
+    // A frame is answered within its round, and the next one is sent a round later.
+    if (rounds.lease < 2 * fleet_.delta)
+      Wrong(At(*t),
+            fmt::format("`lease` must be at least two rounds ({:.6g} s): it ends within each otherwise",
+                        2 * fleet_.delta));
+    if (rounds.patience < 2 * fleet_.delta)
+      Wrong(At(*t),
+            fmt::format("`patience` must be at least two rounds ({:.6g} s): robots are silent between rounds",
+                        2 * fleet_.delta));
   }
 
   void Robots(const toml::table& root) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diag/diagnostic.h"
+#include "runtime/rounds/settings.h"
 #include "sim/bodies/body.h"
 #include "sim/world/world.h"
 
@@ -52,6 +53,15 @@ enum class Until : uint8_t {
   kStopped,  ///< every robot stopped
 };
 
+/// Says how the robots keep together over a network (docs/runtime.md). Times in seconds.
+struct FleetRounds {
+  runtime::rounds::OnLoss on_loss = runtime::rounds::OnLoss::kHalt;
+  bool disks = false;      ///< robots keep what they store and promise where a crash cannot reach it
+  double lease = 0.5;      ///< how long a robot acts after what was answered last
+  double stop_time = 0.1;  ///< from the end of a lease until its fallback has taken over
+  double patience = 0.5;   ///< without progress for so long, a robot is given up
+};
+
 /// Holds the robots, their world, and how a simulation runs. Lengths in metres, times in seconds, angles in
 /// radians.
 struct Fleet {
@@ -72,6 +82,7 @@ struct Fleet {
   double path_clearance = 1;  ///< `pathIsClear`
   double cell = 1;            ///< the side of the cells of maps
   double map_range = 0;       ///< how far scans are drawn into maps; 0: the scanner's range
+  FleetRounds rounds;
   std::vector<FleetRobot> robots;
   std::map<std::string, FleetValue> params;
   std::map<std::string, FleetValue> initial;

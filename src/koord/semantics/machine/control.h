@@ -110,6 +110,7 @@ RONDO_INSTRUCTION RunNow(Registers& r, const Instruction&) {
 RONDO_INSTRUCTION RunLog(Registers& r, const Instruction& i) {
   r.top -= i.b;
   if (r.m.host != nullptr) r.m.host->Log(r.robot, i.a, {r.top, i.b});
+  if (r.m.keep_said) r.m.said.push_back({i.a, {r.top, r.top + i.b}});
   return Fault::kNone;
 }
 

@@ -57,6 +57,7 @@ bool Machine::Run(uint32_t entry, size_t robot, bool total) {
   MachineState& m = state_;
   m.writes.clear();
   m.units.clear();
+  m.said.clear();
   m.calls.clear();
   m.locked = m.stopped = m.in_summary = m.used_default = false;
   if (++m.run == 0) {

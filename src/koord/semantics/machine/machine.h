@@ -63,6 +63,10 @@ class Machine {
   const std::vector<Write>& writes() const { return state_.writes; }
   /// Returns the variables and cells that every robot may write and that the last run wrote, each once.
   const std::vector<Unit>& units() const { return state_.units; }
+  /// Says whether runs remember what they write to streams; `said` returns that of the last one. For who has to
+  /// know first whether the event counts.
+  void KeepSaid(bool keep) { state_.keep_said = keep; }
+  const std::vector<Said>& said() const { return state_.said; }
   /// Says whether another robot holds the lock of the event: then `atomic` ends a run with `Fault::kNoLock`.
   void SetLockTaken(bool taken) { state_.lock_taken = taken; }
   /// Restores what the last run wrote to what was there before.

@@ -27,6 +27,12 @@ struct Unit {
   friend bool operator==(Unit, Unit) = default;
 };
 
+/// Is a value that a run wrote to a stream, of a log type (`Team::ShowLogged`).
+struct Said {
+  size_t type;
+  std::vector<Word> value;
+};
+
 /// Holds what a machine keeps from one run to the next, and what a run leaves behind.
 struct MachineState {
   const Code& code;
@@ -42,10 +48,12 @@ struct MachineState {
   std::vector<Word> buffer = {};     ///< of a list that is being made
   std::vector<Write> writes = {};
   std::vector<Unit> units = {};
+  std::vector<Said> said = {};
   std::vector<uint32_t> logged = {};  ///< by address: the run that wrote it last
   uint32_t run = 0;
   std::vector<bool> marks = {};
   bool used_default = false;
+  bool keep_said = false;
   bool locked = false;
   bool lock_taken = false;
   bool stopped = false;

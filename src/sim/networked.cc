@@ -1,0 +1,174 @@
+#include "sim/networked.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/mixed.h"
+#include "sim/uniform.h"
+
+namespace rondo::sim {
+
+namespace rounds = runtime::rounds;
+using koord::semantics::Effect;
+
+namespace {
+
+cores::Time Nanoseconds(double seconds) { return static_cast<cores::Time>(std::llround(seconds * 1e9)); }
+
+}  // namespace
+
+cores::Setup Networked::SetupOf(const Fleet& fleet, const SimulationOptions& options) {
+  cores::Setup setup;
+  setup.settings.robots = static_cast<uint32_t>(fleet.robots.size());
+  setup.settings.agreement = setup.settings.session = options.seed;
+  setup.settings.on_loss = fleet.rounds.on_loss;
+  setup.settings.delta = Nanoseconds(fleet.delta);
+  setup.settings.lease = Nanoseconds(fleet.rounds.lease);
+  setup.settings.stop_time = Nanoseconds(fleet.rounds.stop_time);
+  setup.settings.patience = Nanoseconds(fleet.rounds.patience);
+  setup.disks = fleet.rounds.disks;
+  setup.seed = options.seed;
+  setup.conditions = options.network->conditions;
+  setup.faults = options.network->faults;
+  return setup;
+}
+
+Networked::Networked(const koord::Model& model, const Fleet& fleet, const SimulationOptions& options,
+                     const std::vector<std::unique_ptr<Body>>& bodies, const MakeTeam& make,
+                     diag::Diagnostics& diagnostics, Stage& stage)
+    : fleet_(fleet),
+      options_(options),
+      stage_(stage),
+      machines_(fleet.robots.size()),
+      cores_(SetupOf(fleet, options), *this) {
+  for (uint32_t r = 0; r < machines_.size() && good_; ++r) {
+    Machine& m = machines_[r];
+    m.functions = std::make_unique<Functions>(model, fleet, options.seed);
+    m.team = make(*m.functions);
+    good_ = m.team != nullptr;
+    if (!good_) return;
+    m.functions->Attach(*m.team, bodies);
+    m.senses = std::make_unique<Senses>(stage_, m.team->heap());
+    m.node = std::make_unique<koord::node::Node>(*m.team, r, m.senses.get(), options.seed);
+    m.node->SetChoose([this](uint64_t round, size_t robot, std::span<const Effect> effects) {
+      return Choose(round, robot, effects);
+    });
+    m.monitor = std::make_unique<Monitor>(*m.team, diagnostics, [](const Violation&, bool) {});
+  }
+}
+
+// Which event a robot runs, as the fleet says; of the values of its `any`, a random one.
+size_t Networked::Choose(uint64_t round, size_t robot, std::span<const Effect> effects) const {
+  std::mt19937_64 random(base::Mixed(options_.seed ^ base::Mixed(round * 1024 + robot)));
+  if (round > 0 && !effects[0].urgent && fleet_.skip > 0 && Uniform(random) < fleet_.skip)
+    return effects.size();
+  std::vector<size_t> firsts;  // of the events
+  for (size_t i = 0; i < effects.size(); ++i) {
+    if (i == 0 || effects[i].event != effects[i - 1].event) firsts.push_back(i);
+  }
+  const size_t k = fleet_.policy == Policy::kFirst    ? 0
+                   : fleet_.policy == Policy::kRandom ? random() % firsts.size()
+                                                      : (round + robot) % firsts.size();
+  const size_t end = k + 1 < firsts.size() ? firsts[k + 1] : effects.size();
+  return firsts[k] + random() % (end - firsts[k]);
+}
+
+void Networked::Start(runtime::codec::Bytes store) {
+  store_ = std::move(store);
+  cores_.Start();
+}
+
+void Networked::Until(double time) {
+  const cores::Time until = Nanoseconds(time);
+  while (!broken_ && cores_.Next(until)) {
+  }
+}
+
+uint64_t Networked::plans() const {
+  uint64_t plans = 0;
+  for (const Machine& m : machines_) plans += m.functions->plans();
+  return plans;
+}
+
+std::vector<Violation> Networked::violations() const {
+  std::vector<Violation> all;
+  for (const Machine& m : machines_)
+    all.insert(all.end(), m.monitor->violations().begin(), m.monitor->violations().end());
+  return all;
+}
+
+NetworkReport Networked::Report() {
+  report_.datagrams = cores_.datagrams();
+  report_.bytes = cores_.bytes();
+  std::ranges::sort(report_.waits);
+  return std::move(report_);
+}
+
+rounds::Program& Networked::Begin(uint32_t r) {
+  Machine& m = machines_[r];
+  m.node->Reset(m.team->blank(), options_.seed);
+  m.node->Load(store_);
+  m.contributed = {};
+  m.acted = 0;
+  if (cores_.incarnation(r) > 1) stage_.Happens(static_cast<int>(r), "starts again");
+  return *m.node;
+}
+
+void Networked::Crashed(uint32_t r) { stage_.Happens(static_cast<int>(r), "crashes"); }
+
+void Networked::On(uint32_t r, const rounds::Output& output) {
+  std::visit([&](const auto& o) { Do(r, o); }, output);
+}
+
+void Networked::Do(uint32_t, const rounds::Send&) {}
+void Networked::Do(uint32_t, const rounds::Stored&) {}
+
+void Networked::Do(uint32_t r, const rounds::Contributed& c) {
+  Machine& m = machines_[r];
+  m.contributed = c.at;
+  m.contributed_at = cores_.now();
+  m.functions->TakeLog();  // what is said counts when the round is final (`Applied::said`)
+  m.monitor->Summary(now());
+  if (m.node->failed()) stage_.Fails(r, *m.node->failed());
+  stage_.Contributed(r);
+}
+
+void Networked::Do(uint32_t r, const rounds::Committed& c) {
+  Machine& m = machines_[r];
+  if (m.contributed.epoch == c.at.epoch && m.contributed.round + 1 == c.at.round)
+    report_.waits.push_back(static_cast<double>(cores_.now() - m.contributed_at) * 1e-9);
+  if (c.at.round <= committed_) return;
+  committed_ = c.at.round;
+  stage_.Committed(committed_, *m.node);
+}
+
+void Networked::Do(uint32_t r, const rounds::Act& act) {
+  Machine& m = machines_[r];
+  if (act.at.round <= m.acted) return;
+  m.acted = act.at.round;
+  stage_.Acts(r, m.team->heap(), *m.node);
+}
+
+void Networked::Do(uint32_t r, const rounds::FallBack&) {
+  ++report_.fallbacks;
+  stage_.Happens(static_cast<int>(r), "falls back");
+}
+
+void Networked::Do(uint32_t, const rounds::Adopted& adopted) {
+  if (adopted.decision.epoch <= epoch_) return;
+  epoch_ = adopted.decision.epoch;
+  report_.epochs = epoch_;
+  std::vector<std::string> names;
+  for (const auto& member : adopted.decision.members) names.push_back(fleet_.robots[member.robot].name);
+  if (epoch_ > 1 || names.size() < fleet_.robots.size())
+    stage_.Happens(-1, fmt::format("the team is {}", fmt::join(names, ", ")));
+}
+
+void Networked::Do(uint32_t r, const rounds::Broken& broken) {
+  broken_ = true;
+  stage_.Happens(static_cast<int>(r), broken.what);
+}
+
+}  // namespace rondo::sim
