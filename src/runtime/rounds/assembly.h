@@ -23,6 +23,8 @@ class Assembly {
   const codec::Bytes& whole() const { return whole_; }
   /// Returns the first part that is missing, and which of the 64 from there on are.
   void Missing(uint32_t& from, uint64_t& window) const;
+  /// Appends everything that it is (`Core::Describe`).
+  void Describe(codec::Writer& writer) const;
 
  private:
   codec::Bytes whole_;

@@ -29,8 +29,8 @@ std::string_view Name(Phase phase) {
 }
 
 Core::Core(const Settings& settings, Program& program, Disk* disk, std::optional<View> record)
-    : settings_(settings), program_(program), disk_(disk), peers_(settings.robots) {
-  program_.Save(store_);
+    : settings_(settings), program_(&program), disk_(disk), peers_(settings.robots) {
+  program_->Save(store_);
   digest_ = codec::Sum(store_);
   // What cannot be read is forgotten.
   if (record) Recall(*record);
@@ -137,7 +137,7 @@ void Core::On(Member from, const codec::Part& part) {
   if (*part.of == from && !frame.complete() && !frame.Fits(part)) frame.Clear();
   if (frame.complete() || !frame.Add(part)) return;
   const auto contribution = Decode(View(frame.whole()));
-  if (!contribution || !program_.Accepts(part.of->robot, contribution->inputs, contribution->alternatives)) {
+  if (!contribution || !program_->Accepts(part.of->robot, contribution->inputs, contribution->alternatives)) {
     frame.Clear();
     ++refused_[static_cast<size_t>(codec::Refused::kMalformed)];
     return;

@@ -88,7 +88,8 @@ class Core {
   /// and it has the store of that. Else stores and promises are kept before anybody hears of them.
   /// @param record  what was last kept by an earlier life on the same disk, if there is one.
   Core(const Settings& settings, Program& program, Disk* disk, std::optional<View> record);
-  Core(const Core&) = delete;
+  /// Copies a core, for searches; `program` and `disk` are copies of the other's.
+  Core(const Core& other, Program& program, Disk* disk);
   Core& operator=(const Core&) = delete;
 
   /// Takes a datagram, or none (time went on), at a moment that is not before the last one, and appends what
@@ -102,10 +103,15 @@ class Core {
   bool active() const { return active_; }
   /// Reports whether its vote counts for the next epoch.
   bool votes() const { return MayVote(Epoch() + 1); }
+  /// Appends everything that decides what the core does from now on, with moments as they lie from now: cores with the
+  /// same description and the same store do the same. For searches (docs/theory.md, "Rounds on robots").
+  void Describe(Bytes& out) const;
   /// Returns how many datagrams were refused, by reason.
   const std::array<uint64_t, 5>& refused() const { return refused_; }
 
  private:
+  Core(const Core&) = default;
+
   struct Peer {
     uint64_t incarnation = 0;
     bool heard = false;
@@ -172,7 +178,7 @@ class Core {
   void Recall(View record);
 
   const Settings settings_;
-  Program& program_;
+  Program* program_;
   Disk* disk_;
   Time now_ = 0;
   std::vector<Output>* outputs_ = nullptr;

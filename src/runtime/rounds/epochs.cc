@@ -240,7 +240,7 @@ void Core::Adopt(const Decision& decision) {
 void Core::Enter() {
   // Who promised to decide on the next epoch stores nothing more in this one.
   if (voter_.promised) return;
-  const bool loaded = program_.Load(View(base_.whole()));
+  const bool loaded = program_->Load(View(base_.whole()));
   base_.Clear();
   if (loaded) TakePart();
 }
@@ -295,7 +295,7 @@ void Core::Recall(View record) {
   }
   const Place held = codec::ReadPlace(r);
   const View store = r.Block(codec::kMostPayload);
-  if (!r.Complete() || !program_.Load(store)) return;
+  if (!r.Complete() || !program_->Load(store)) return;
   votes_ = votes;
   decision_ = decision;
   voter_ = voter;

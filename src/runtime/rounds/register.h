@@ -53,6 +53,8 @@ class Attempt {
   const std::optional<Decision>& value() const { return value_; }
   /// Takes a vote, each robot's once. Returns true when it is decided with it.
   bool Accepted(uint32_t robot);
+  /// Appends everything that it is (`Core::Describe`).
+  void Describe(codec::Writer& writer) const;
 
  private:
   uint64_t epoch_;

@@ -10,10 +10,10 @@ void Core::Begin() {
   asked_in_epoch_ = true;
   phase_ = Phase::kCollecting;
   Bytes payload;
-  program_.Contribute(place_.round, payload);
+  program_->Contribute(place_.round, payload);
   // What others would refuse must not be merged here alone: then the robot does nothing.
   const auto mine = Decode(View(payload));
-  if (!mine || !program_.Accepts(settings_.self, mine->inputs, mine->alternatives)) {
+  if (!mine || !program_->Accepts(settings_.self, mine->inputs, mine->alternatives)) {
     ++refused_[static_cast<size_t>(codec::Refused::kMalformed)];
     payload.clear();
     Encode(Contribution(), payload);
@@ -34,7 +34,7 @@ void Core::TryMerge() {
   if (voter_.promised) return;
   std::vector<Contribution> contributions;
   for (const Assembly& frame : frames_) contributions.push_back(*Decode(View(frame.whole())));
-  program_.Apply(place_.round, Merge(place_.round, members_, contributions));
+  program_->Apply(place_.round, Merge(place_.round, members_, contributions));
   before_ = std::move(frames_);
   frames_.assign(members_.size(), {});
   ++place_.round;
@@ -44,7 +44,7 @@ void Core::TryMerge() {
 void Core::StoreNow() {
   held_ = place_;
   store_.clear();
-  program_.Save(store_);
+  program_->Save(store_);
   digest_ = codec::Sum(store_);
   phase_ = Phase::kStored;
   KeepRecord();
