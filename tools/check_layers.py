@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Fails on an include that the layer graph does not allow, on an edge of the graph that no include needs, on a cycle,
-and on a header whose namespace does not begin the path of its folder.
+on a header whose namespace does not begin the path of its folder, and on an include with which a core could see the
+world: cores own no thread, clock, socket, file, random source or unordered container (docs/runtime.md).
 
   check_layers.py LAYERS.TXT   (written by CMake: one line `component:dep,dep:test_dep` for each rondo_component)
 """
@@ -9,6 +10,10 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent / "src"
+CORES = ("runtime/codec", "runtime/rounds")
+# What cores may use of the standard library and of others.
+DETERMINISTIC = {"algorithm", "array", "bit", "compare", "cstddef", "cstdint", "cstring", "map", "optional", "set", "span", "string",
+                 "string_view", "tuple", "utility", "variant", "vector", "xxhash.h"}
 
 
 def read_graph(path):
@@ -71,6 +76,9 @@ def main():
         is_test = path.stem.endswith("_test")
         allowed = graph[component][0] + (graph[component][1] if is_test else [])
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            outside = re.match(r"\s*#include <([^>]+)>", line)
+            if outside and component in CORES and not is_test and outside.group(1) not in DETERMINISTIC:
+                problems.append(f"{path.relative_to(ROOT)}:{number}: a core uses <{outside.group(1)}>")
             include = re.match(r'\s*#include "([^"]+)"', line)
             if not include:
                 continue
