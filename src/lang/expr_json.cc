@@ -42,6 +42,8 @@ const char* Name(ExprKind kind) {
       return "quantifier";
     case ExprKind::kQuantity:
       return "quantity";
+    case ExprKind::kConditional:
+      return "conditional";
     case ExprKind::kAny:
       return "any";
   }

@@ -89,7 +89,14 @@ ExprId ExprParser::Binary(std::string text, ExprId a, ExprId b) {
 ExprId ExprParser::ParseExpr() {
   Depth depth(*this);
   if (depth.TooDeep()) return Fail(Peek().span);
-  return ParseImplies();
+  const ExprId value = ParseImplies();
+  if (!HasConditionals() || failed_ || !At("if")) return value;
+  Take();
+  const ExprId condition = ParseImplies();
+  if (!Expect("else", "the condition of a value")) return Fail(pool_[value].span);
+  const ExprId otherwise = ParseExpr();
+  const Span span = pool_[value].span.To(pool_[otherwise].span);
+  return pool_.Add({ExprKind::kConditional, span, {}, {condition, value, otherwise}, {}});
 }
 
 ExprId ExprParser::ParseImplies() {
@@ -357,7 +364,8 @@ ExprId ExprParser::ParsePrimary() {
     case TokenKind::kDedent:
       break;
   }
-  Unexpected("a value");
+  auto& report = Unexpected("a value");
+  if (token.text == "for" && Peek(1).text == "all") report.Help("write `forall`");
   return Fail(token.span);
 }
 

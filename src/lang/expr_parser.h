@@ -11,7 +11,7 @@ namespace rondo::lang {
 
 /// Moves a cursor over tokens and reads expressions and types. Languages derive their parsers from it.
 ///
-/// Binding, from loose to tight: `forall`/`exists`; `implies` (to the right); `or`; `and`; `not`; one
+/// Binding, from loose to tight: `a if c else b` (in languages that have it); `forall`/`exists`; `implies` (to the right); `or`; `and`; `not`; one
 /// comparison or `in`; `+ -`; `* / %`; unary `-`; `.name`, `[index]`, `(arguments)`. So `not a == b` is `not
 /// (a == b)`.
 ///
@@ -35,6 +35,8 @@ class ExprParser {
   virtual bool IsReserved(std::string_view word) const = 0;
   /// Reports whether the word may follow a literal number as its unit.
   virtual bool IsUnit(std::string_view /*word*/) const { return false; }
+  /// Reports whether this language has `a if c else b`.
+  virtual bool HasConditionals() const { return false; }
   /// Is called where an expression must go on: languages in which lines end here may go on in the next line.
   virtual void AllowLineBreak() {}
   virtual ~ExprParser() = default;

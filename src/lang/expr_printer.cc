@@ -7,6 +7,7 @@ namespace {
 
 // How tightly an expression binds; larger binds tighter.
 enum Level : int {
+  kConditionalLevel,
   kQuantifierLevel,
   kImpliesLevel,
   kOrLevel,
@@ -21,6 +22,8 @@ enum Level : int {
 
 int LevelOf(const Expr& e) {
   switch (e.kind) {
+    case ExprKind::kConditional:
+      return kConditionalLevel;
     case ExprKind::kQuantifier:
       return kQuantifierLevel;
     case ExprKind::kAny:
@@ -111,6 +114,10 @@ class Printer {
         return fmt::format("({})", Items(e, 0));
       case ExprKind::kQuantity:
         return Print(e.args[0], 0) + (e.text.empty() ? "" : " " + e.text);
+      case ExprKind::kConditional:
+        // What stands behind a quantifier belongs to it.
+        return fmt::format("{} if {} else {}", Print(e.args[1], kImpliesLevel), Print(e.args[0], kImpliesLevel),
+                           Print(e.args[2], kConditionalLevel));
       case ExprKind::kAny: {
         const std::string first = Print(e.args[0], kSumLevel);
         const std::string last = e.args.size() > 1 ? ".." + Print(e.args[1], kSumLevel) : "";

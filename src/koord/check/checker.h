@@ -54,6 +54,7 @@ class Checker {
   TypeId Comparison(const lang::Expr& e, TypeId a, TypeId b);
   TypeId Membership(const lang::Expr& e, TypeId a);
   TypeId Quantifier(ExprId id, const lang::Expr& e);
+  TypeId Conditional(const lang::Expr& e);
   TypeId Any(const lang::Expr& e);
   std::optional<TypeId> TypeNamed(const std::string& word) const;
   TypeId List(const lang::Expr& e);
@@ -80,6 +81,7 @@ class Checker {
   void Body(const std::vector<Stmt>& body);
   void Statement(const Stmt& stmt);
   void Assign(const Stmt& stmt);
+  void DeclareLocal(const Stmt& stmt);
   /// Returns the type that can be assigned; checks that writing is allowed. Invalid after a report.
   TypeId Target(ExprId id);
   TypeId TargetRoot(ExprId id, size_t variable);
@@ -114,6 +116,7 @@ class Checker {
   std::set<std::string> modules_;
   std::map<std::string, std::pair<TypeId, uint32_t>> enum_members_;
   std::vector<const ExploreDef*> explorations_;
+  std::set<uint32_t> locals_;              // bindings that are local variables
   std::vector<uint32_t> scope_;            // bindings that are visible, innermost last
   std::map<int, std::set<size_t>> calls_;  // function (-1: none) -> functions that its body calls
   Place place_ = Place::kSpec;

@@ -58,6 +58,8 @@ TypeId Checker::Visit(ExprId id, const lang::Expr& e) {
     }
     case ExprKind::kQuantifier:
       return Quantifier(id, e);
+    case ExprKind::kConditional:
+      return Conditional(e);
     case ExprKind::kAny:
       return Any(e);
     case ExprKind::kQuantity:
@@ -207,6 +209,22 @@ uint32_t Checker::Bind(const std::string& name, TypeId type, Span span) {
   model_.bindings.push_back({name, type, span});
   scope_.push_back(index);
   return index;
+}
+
+TypeId Checker::Conditional(const lang::Expr& e) {
+  auto& types = model_.types;
+  NeedBool(e.args[0], "the condition of a value");
+  const TypeId a = Expr(e.args[1]);
+  const TypeId b = Expr(e.args[2]);
+  if (types.IsNumeric(a) && types.IsNumeric(b))
+    return types.Is(a, TypeKind::kInt) && types.Is(b, TypeKind::kInt) ? types.integer() : types.real();
+  if (types.Is(a, TypeKind::kError) || types.Is(b, TypeKind::kError)) return types.error();
+  if (types.Unify(a, b)) return a;
+  diagnostics_
+      .Report(Kind::kKoordTypeMismatch, e.span, "both values must have one type")
+      .At(exprs_[e.args[1]].span, fmt::format("`{}`", types.Name(a)))
+      .At(exprs_[e.args[2]].span, fmt::format("`{}`", types.Name(b)));
+  return types.error();
 }
 
 // any q in [1, 2, 4]; any int in 0..5: one of these values, and nothing says which.

@@ -13,6 +13,7 @@ using lang::TypeKind;
 
 void Checker::Body(const std::vector<Stmt>& body) {
   const Stmt* ended = nullptr;
+  const size_t depth = scope_.size();  // local variables end with their block
   for (const Stmt& stmt : body) {
     if (ended != nullptr) {
       diagnostics_.Report(Kind::kKoordUnreachable, stmt.span, "this statement is never reached")
@@ -25,6 +26,24 @@ void Checker::Body(const std::vector<Stmt>& body) {
       ended = &stmt;
     }
   }
+  scope_.resize(depth);
+}
+
+void Checker::DeclareLocal(const Stmt& stmt) {
+  const TypeId type = TypeOf(stmt.type);
+  NeedType(stmt.value, type, "the value of a local variable");
+  const std::string& name = stmt.names[0];
+  const auto known = [&](diag::Span span) {
+    diagnostics_.Report(Kind::kKoordDuplicate, stmt.name_spans[0], fmt::format("there is a `{}` already", name))
+        .At(span, "declared here");
+  };
+  if (const int v = FindVariable(name); v >= 0) known(model_.variables[static_cast<size_t>(v)].span);
+  for (const uint32_t b : scope_) {
+    if (model_.bindings[b].name == name) known(model_.bindings[b].span);
+  }
+  const uint32_t binding = Bind(name, type, stmt.name_spans[0]);
+  model_.bound_by[&stmt] = {binding};
+  locals_.insert(binding);
 }
 
 void Checker::Statement(const Stmt& stmt) {
@@ -36,6 +55,10 @@ void Checker::Statement(const Stmt& stmt) {
     case StmtKind::kAddAssign:
     case StmtKind::kIncrement:
       return Assign(stmt);
+    case StmtKind::kLocal:
+      return DeclareLocal(stmt);
+    case StmtKind::kPass:
+      return;
     case StmtKind::kCall:
       Expr(stmt.value);
       // l.remove(x) and l.append(x) write their list.
@@ -212,6 +235,7 @@ TypeId Checker::Target(ExprId id) {
   const Ref cell_ref = model_.RefOf(cell);
   if (cell_ref.kind == RefKind::kCell) return TargetRoot(cell, cell_ref.index).valid() ? type : TypeId{};
   if (ref.kind == RefKind::kVariable) return TargetRoot(root, ref.index).valid() ? type : TypeId{};
+  if (ref.kind == RefKind::kBinding && locals_.contains(ref.index)) return type;
   if (ref.kind == RefKind::kBinding && place_ == Place::kFunction) {
     const auto it = model_.bound_by.find(model_.functions[static_cast<size_t>(function_)].def);
     if (it != model_.bound_by.end()) {

@@ -40,6 +40,9 @@ struct Stmt {
   diag::Span span;  ///< of the first line for statements with a body
   ExprId target;
   ExprId value;
+  /// `-`, `*` or `/` for an assignment that was written `target -= operand`; its value is `target - operand`.
+  std::string update;
+  lang::TypeSyntax type;  ///< of a local variable
   std::vector<ExprId> operands;
   std::vector<std::string> names;
   std::vector<diag::Span> name_spans;

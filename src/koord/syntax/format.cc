@@ -234,7 +234,16 @@ class Formatter {
     };
     switch (s.kind) {
       case StmtKind::kAssign:
+        if (!s.update.empty()) {
+          const ExprId operand = program_.exprs[s.value].args[1];
+          return Line(s.span, fmt::format("{} {}= {}", Text(s.target), s.update, Text(operand)));
+        }
         return Line(s.span, fmt::format("{} = {}", Text(s.target), Text(s.value)));
+      case StmtKind::kLocal:
+        return Line(s.span, fmt::format("{} {} = {}", lang::PrintType(program_.exprs, s.type), s.names[0],
+                                        Text(s.value)));
+      case StmtKind::kPass:
+        return Line(s.span, "pass");
       case StmtKind::kAddAssign:
         return Line(s.span, fmt::format("{} += {}", Text(s.target), Text(s.value)));
       case StmtKind::kIncrement:

@@ -157,6 +157,8 @@ class Writer {
       j["operands"] = json::array();
       for (const ExprId e : s.operands) j["operands"].push_back(Ex(e));
     }
+    if (!s.update.empty()) j["update"] = s.update;
+    if (s.kind == StmtKind::kLocal) j["type"] = Type(s.type);
     if (!s.names.empty()) j["variables"] = s.names;
     if (!s.body.empty()) j["body"] = Body(s.body);
     if (s.has_else) j["else"] = Body(s.orelse);

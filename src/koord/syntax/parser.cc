@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "koord/syntax/foreign.h"
 #include "koord/syntax/program_parser.h"
 #include "lang/lexer.h"
 
@@ -108,6 +109,11 @@ void Parser::ParseItem() {
     return;
   }
   if (ParseSpecItem()) return;
+  if (const std::string_view instead = AlternativeFor(Peek().text, WordPlace::kItem);
+      !instead.empty() && Peek(1).text != ":" && Peek(1).text != "(") {
+    Unexpected("a section, an event or a specification").Help(std::string(instead));
+    return SkipLine();
+  }
   if (AtKind(TokenKind::kName) && !IsReserved(Peek().text)) return ParseEvent();
   Unexpected("a section, an event or a specification");
   SkipLine();

@@ -18,6 +18,7 @@ class Parser : public lang::ExprParser {
 
  protected:
   bool IsReserved(std::string_view word) const override { return IsReservedWord(word); }
+  bool HasConditionals() const override { return true; }
   void AllowLineBreak() override {
     if (in_specification_) AcceptContinuation("");
   }
@@ -45,6 +46,10 @@ class Parser : public lang::ExprParser {
   std::vector<Stmt> ParseBlock();
   void ParseStatement(std::vector<Stmt>& out);
   bool ParseSimple(std::vector<Stmt>& out);
+  bool AtLocal() const;
+  void AsRange(Stmt& stmt);
+  bool IsForeign();
+  void NoAssignment(ExprId value);
   void ParseIf(std::vector<Stmt>& out, bool elif);
   void ParseFor(std::vector<Stmt>& out);
   bool AtCompound() const;

@@ -14,7 +14,7 @@ bool Parser::ParseSpecItem() {
   const auto& next = Peek(1);
   const bool name_follows = next.kind == TokenKind::kName;
   const Span start = Peek().span;
-  if (At("param") && name_follows) {
+  if ((At("param") || At("const")) && name_follows) {
     ParseParam(start);
   } else if (At("assume") && (next.kind != TokenKind::kPunctuation || next.text == ":" || next.text == "(" ||
                               next.text == "-")) {
@@ -75,10 +75,16 @@ void Parser::EndSpecItem() {
 }
 
 // param type name [= value] {; [param] type name [= value]}
+// param type name [= value]  |  const type name = value
 void Parser::ParseParam(Span start) {
-  Take();
+  const bool constant = Take().text == "const";
   std::vector<Decl> decls;
   if (!ParseDecl(decls)) return SkipLine();
+  for (const Decl& decl : decls) {
+    if (!constant || decl.initial.valid()) continue;
+    diagnostics_.Report(diag::Kind::kSyntaxUnexpected, decl.span, "a constant needs a value")
+        .Help("write `= value` behind it; a `param` may have any");
+  }
   for (Decl& decl : decls) AddItem(ParamDef{decl, decl.span}, start);
   EndSpecItem();
 }

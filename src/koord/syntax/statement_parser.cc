@@ -1,4 +1,10 @@
+#include <fmt/format.h>
+
+#include <array>
+
+#include "koord/syntax/foreign.h"
 #include "koord/syntax/program_parser.h"
+#include "lang/suggest.h"
 
 namespace rondo::koord {
 
@@ -131,6 +137,25 @@ void Parser::ParseIf(std::vector<Stmt>& out, bool elif) {
   out.push_back(std::move(stmt));
 }
 
+// `for i in range(n)` and `for i in range(a, b)` are `for i = 0, n` and `for i = a, b`.
+void Parser::AsRange(Stmt& stmt) {
+  const lang::Expr call = pool_[stmt.value];
+  if (call.kind != lang::ExprKind::kCall) return;
+  const lang::Expr& callee = pool_[call.args[0]];
+  if (callee.kind != lang::ExprKind::kName || callee.text != "range") return;
+  if (call.args.size() < 2 || call.args.size() > 3) {
+    diagnostics_.Report(Kind::kKoordArity, call.span, "`range` takes 1 or 2 arguments")
+        .Under(fmt::format("{} given", call.args.size() - 1))
+        .Help("`range(n)` are the numbers from 0 to n - 1, `range(a, b)` those from a to b - 1");
+    stmt.value = Fail(call.span);
+    return;
+  }
+  stmt.kind = StmtKind::kForRange;
+  const bool one = call.args.size() == 2;
+  stmt.value = one ? pool_.Add({lang::ExprKind::kInt, callee.span, "0", {}, {}}) : call.args[1];
+  stmt.operands.push_back(call.args.back());
+}
+
 // for x, y in list: body  |  for i = a, b: body
 void Parser::ParseFor(std::vector<Stmt>& out) {
   Stmt stmt;
@@ -151,11 +176,28 @@ void Parser::ParseFor(std::vector<Stmt>& out) {
       stmt.value = ParseExpr();
     else
       stmt.value = Fail(stmt.span);
+    if (stmt.names.size() == 1) AsRange(stmt);
   }
   stmt.span = stmt.span.To(PreviousSpan());
   if (failed()) return SkipLine();
   stmt.body = ParseSuite("the head of a loop");
   out.push_back(std::move(stmt));
+}
+
+// A type and a name: `int k = 0`, `List<pos> way = []`, `float[3] a = ...`.
+bool Parser::AtLocal() const {
+  if (Peek(1).kind == TokenKind::kName) return !IsReserved(Peek(1).text);
+  if (Peek(1).text != "<" && Peek(1).text != "[") return false;
+  const std::string_view close = Peek(1).text == "<" ? ">" : "]";
+  // To the bracket that closes, and a name behind it.
+  int open = 0;
+  for (size_t k = 1; Peek(k).kind != TokenKind::kNewline && Peek(k).kind != TokenKind::kEnd; ++k) {
+    if (Peek(k).text == Peek(1).text) ++open;
+    if (Peek(k).text != close || --open > 0) continue;
+    if (Peek(k + 1).text == "[" && close == "]") continue;
+    return Peek(k + 1).kind == TokenKind::kName && !IsReserved(Peek(k + 1).text) && Peek(k + 2).text == "=";
+  }
+  return false;
 }
 
 bool Parser::ParseSimple(std::vector<Stmt>& out) {
@@ -170,15 +212,27 @@ bool Parser::ParseSimple(std::vector<Stmt>& out) {
   for (const StmtKind kind : {StmtKind::kStop, StmtKind::kBreak, StmtKind::kContinue}) {
     if (Accept(WordsOf(kind).word)) return finish(kind);
   }
+  if (At("pass") && (Peek(1).kind == TokenKind::kNewline || Peek(1).text == ";" || Peek(1).kind == TokenKind::kEnd) &&
+      Accept("pass"))
+    return finish(StmtKind::kPass);
   if (At("exit") && Peek(1).kind == TokenKind::kNewline && Accept("exit")) return finish(StmtKind::kStop);
   if (Accept("return")) {
     if (!AtKind(TokenKind::kNewline) && !AtKind(TokenKind::kEnd) && !At(";")) stmt.value = ParseExpr();
     return finish(StmtKind::kReturn);
   }
+  if (IsForeign()) return false;
   // The left side is a postfix expression; `=` after it is an assignment, not the papers' equality.
   if (!AtKind(TokenKind::kName) || (IsReserved(Peek().text))) {
     Unexpected("a statement");
     return false;
+  }
+  if (AtLocal()) {
+    stmt.type = ParseType();
+    stmt.name_spans.push_back(Peek().span);
+    stmt.names.push_back(ExpectName("the name of a variable"));
+    Expect("=", "the name of a local variable");
+    if (!failed()) stmt.value = ParseExpr();
+    return finish(StmtKind::kLocal);
   }
   stmt.target = ParsePostfix();
   if (failed()) return false;
@@ -191,6 +245,18 @@ bool Parser::ParseSimple(std::vector<Stmt>& out) {
     return finish(StmtKind::kAddAssign);
   }
   if (Accept("++")) return finish(StmtKind::kIncrement);
+  for (const std::string_view sign : {"-", "*", "/"}) {
+    if (!At(sign)) continue;
+    const bool twice = sign == "-" && Peek(1).text == "-";
+    if (!twice && Peek(1).text != "=") break;
+    stmt.update = sign;
+    Take();
+    const diag::Span second = Take().span;
+    const ExprId operand = twice ? pool_.Add({lang::ExprKind::kInt, second, "1", {}, {}}) : ParseExpr();
+    const diag::Span span = pool_[stmt.target].span.To(pool_[operand].span);
+    stmt.value = pool_.Add({lang::ExprKind::kBinary, span, stmt.update, {stmt.target, operand}, {}});
+    return finish(StmtKind::kAssign);
+  }
   if (At("<<")) {
     while (Accept("<<")) stmt.operands.push_back(ParseExpr());
     return finish(StmtKind::kStream);
@@ -200,8 +266,45 @@ bool Parser::ParseSimple(std::vector<Stmt>& out) {
     stmt.target = {};
     return finish(StmtKind::kCall);
   }
-  Unexpected("`=`").Under("a value alone does nothing");
+  NoAssignment(stmt.target);
   return false;
+}
+
+// A word that begins a statement elsewhere, and is no variable here: says what to write instead.
+bool Parser::IsForeign() {
+  const std::string_view instead = AlternativeFor(Peek().text, WordPlace::kStatement);
+  const lang::Token& next = Peek(1);
+  const bool statement = next.kind != TokenKind::kPunctuation || next.text == ":" || next.text == "(" || next.text == "!";
+  if (instead.empty() || !statement) return false;
+  Unexpected("a statement").Help(std::string(instead));
+  return true;
+}
+
+// A value stands where a statement should be.
+void Parser::NoAssignment(ExprId value) {
+  const lang::Expr& e = pool_[value];
+  static const std::vector<std::string> kBlocks = {"atomic", "if", "elif", "else", "for"};
+  const std::string near =
+      e.kind == lang::ExprKind::kName && At(":") ? lang::Suggest(e.text, kBlocks) : std::string();
+  struct Sign {
+    std::string_view first, second, instead;
+  };
+  static constexpr std::array<Sign, 7> kSigns = {{{"==", "", "assign with `=`"},
+                                                  {":", "=", "assign with `=`"},
+                                                  {"<-", "", "assign with `=`"},
+                                                  {"&&", "=", "write `x = x and ...`"},
+                                                  {"||", "=", "write `x = x or ...`"},
+                                                  {"%", "=", "write `x = x % ...`"},
+                                                  {"!", "", "write `x = not x`"}}};
+  std::string_view instead;
+  for (const Sign& sign : kSigns) {
+    if (At(sign.first) && (sign.second.empty() || Peek(1).text == sign.second)) instead = sign.instead;
+  }
+  auto& report = Unexpected("`=`").Under("a value alone does nothing");
+  if (!near.empty())
+    report.Help("did you mean `" + near + "`?");
+  else if (!instead.empty())
+    report.Help(std::string(instead));
 }
 
 }  // namespace rondo::koord

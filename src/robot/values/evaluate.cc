@@ -145,6 +145,7 @@ Value Evaluator::Visit(const Expr& e, const Scope& scope) {
     case ExprKind::kIndex:
     case ExprKind::kList:
     case ExprKind::kQuantifier:
+    case ExprKind::kConditional:
     case ExprKind::kAny:
       break;
   }

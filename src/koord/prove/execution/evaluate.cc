@@ -175,6 +175,13 @@ TermId Executor::Eval(ExprId id) {
     }
     case ExprKind::kQuantifier:
       return Quantifier(id, e);
+    case ExprKind::kConditional: {
+      const TermId condition = Eval(e.args[0]);
+      const SortId sort = vocabulary_.SortOf(model_.TypeOf(id));
+      const TermId then = As(Under(condition, e.args[1]), sort);
+      const TermId otherwise = As(Under(arena_.Not(condition), e.args[2]), sort);
+      return arena_.Ite(condition, then, otherwise);
+    }
     case ExprKind::kAny:
       return Any(id, e);
     case ExprKind::kQuantity:

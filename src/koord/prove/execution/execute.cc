@@ -116,6 +116,13 @@ void Executor::Execute(const Stmt& stmt) {
       }
       return Assign(stmt.target, Concatenate(old, more));
     }
+    case StmtKind::kLocal: {
+      const uint32_t binding = model_.bound_by.at(&stmt)[0];
+      frame_.bindings[binding] = EvalAs(stmt.value, model_.bindings[binding].type);
+      return;
+    }
+    case StmtKind::kPass:
+      return;
     case StmtKind::kCall:
       return Method(stmt);
     case StmtKind::kStream:

@@ -127,6 +127,8 @@ void Compiler::Gen(ExprId id) {
       return;
     case ExprKind::kQuantifier:
       return Quantifier(id, e);
+    case ExprKind::kConditional:
+      return Conditional(id, e);
     case ExprKind::kAny:
       for (const ExprId arg : e.args) Gen(arg);
       span_ = e.span;
@@ -293,6 +295,19 @@ void Compiler::Junction(const lang::Expr& e) {
   Patch(decided);
   Constant(e.text != "and");
   Patch(out);
+}
+
+void Compiler::Conditional(ExprId id, const lang::Expr& e) {
+  const TypeId type = model_.TypeOf(id);
+  Gen(e.args[0]);
+  const size_t otherwise = Emit(Op::kJumpUnless);
+  GenAs(e.args[1], type);
+  const size_t out = Emit(Op::kJump);
+  Patch(otherwise);
+  GenAs(e.args[2], type);
+  Patch(out);
+  // The whole value again, so that what comes next does not take the last instruction for the only one that made it.
+  Emit(Op::kSlice, 0, Width(type), Width(type));
 }
 
 void Compiler::Comparison(const lang::Expr& e) {

@@ -47,6 +47,16 @@ void Compiler::Execute(const Stmt& stmt) {
       }
       return Assign(stmt.target);
     }
+    case StmtKind::kLocal: {
+      const uint32_t binding = model_.bound_by.at(&stmt)[0];
+      const TypeId type = model_.bindings[binding].type;
+      GenAs(stmt.value, type);
+      span_ = stmt.span;
+      Emit(Op::kSetFrame, FrameOf(binding), Width(type));
+      return;
+    }
+    case StmtKind::kPass:
+      return;
     case StmtKind::kCall:
       return Method(stmt);
     case StmtKind::kStream:

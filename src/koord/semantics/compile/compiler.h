@@ -76,6 +76,7 @@ class Compiler {
   void Unary(const lang::Expr& e);
   void Binary(ExprId id, const lang::Expr& e);
   void Junction(const lang::Expr& e);
+  void Conditional(ExprId id, const lang::Expr& e);
   void Comparison(const lang::Expr& e);
   void Arithmetic(ExprId id, const lang::Expr& e);
   void Membership(const lang::Expr& e);
