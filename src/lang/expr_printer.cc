@@ -116,8 +116,8 @@ class Printer {
         return Print(e.args[0], 0) + (e.text.empty() ? "" : " " + e.text);
       case ExprKind::kConditional:
         // What stands behind a quantifier belongs to it.
-        return fmt::format("{} if {} else {}", Print(e.args[1], kImpliesLevel), Print(e.args[0], kImpliesLevel),
-                           Print(e.args[2], kConditionalLevel));
+        return fmt::format("{} if {} else {}", Print(e.args[1], kImpliesLevel),
+                           Print(e.args[0], kImpliesLevel), Print(e.args[2], kConditionalLevel));
       case ExprKind::kAny: {
         const std::string first = Print(e.args[0], kSumLevel);
         const std::string last = e.args.size() > 1 ? ".." + Print(e.args[1], kSumLevel) : "";

@@ -31,17 +31,17 @@ enum class ExprKind : uint8_t {
   kBool,    // text: true or false
   kName,    // text
   kPid,
-  kField,       // args: base; text: member
-  kIndex,       // args: base, index
-  kCall,        // args: callee, arguments...
-  kUnary,       // text: - or not
-  kBinary,      // text: operator
-  kList,        // args: items
-  kTuple,       // args: items, at least 2
-  kQuantifier,  // text: forall or exists; binders; args: body
-  kQuantity,    // text: unit; args: a literal number
+  kField,        // args: base; text: member
+  kIndex,        // args: base, index
+  kCall,         // args: callee, arguments...
+  kUnary,        // text: - or not
+  kBinary,       // text: operator
+  kList,         // args: items
+  kTuple,        // args: items, at least 2
+  kQuantifier,   // text: forall or exists; binders; args: body
+  kQuantity,     // text: unit; args: a literal number
   kConditional,  // `args[1] if args[0] else args[2]`
-  kAny,         // `any text in ...`; args: a list, or the first and the last whole number
+  kAny,          // `any text in ...`; args: a list, or the first and the last whole number
 };
 
 /// Is a group of bound variables, `i, j in ID`: their domain is a type if `type` has a name, else the

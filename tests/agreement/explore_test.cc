@@ -135,7 +135,10 @@ class Texts {
   std::string Statement(const std::string& indent, int depth) {
     if (Pick(6) == 0) return indent + Special() + "\n";
     if (local_ && Pick(5) == 0)
-      return indent + One({"v -= 1", "v *= 2", "v /= 2", "v--", "pass", "n = v - v", "v = n", "v = v + 1 if b else 0"}) + "\n";
+      return indent +
+             One({"v -= 1", "v *= 2", "v /= 2", "v--", "pass", "n = v - v", "v = n",
+                  "v = v + 1 if b else 0"}) +
+             "\n";
     switch (Pick(depth > 0 ? 11 : 7)) {
       case 0:
         return indent + "n = " + Capped() + "\n";

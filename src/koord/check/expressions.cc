@@ -220,8 +220,7 @@ TypeId Checker::Conditional(const lang::Expr& e) {
     return types.Is(a, TypeKind::kInt) && types.Is(b, TypeKind::kInt) ? types.integer() : types.real();
   if (types.Is(a, TypeKind::kError) || types.Is(b, TypeKind::kError)) return types.error();
   if (types.Unify(a, b)) return a;
-  diagnostics_
-      .Report(Kind::kKoordTypeMismatch, e.span, "both values must have one type")
+  diagnostics_.Report(Kind::kKoordTypeMismatch, e.span, "both values must have one type")
       .At(exprs_[e.args[1]].span, fmt::format("`{}`", types.Name(a)))
       .At(exprs_[e.args[2]].span, fmt::format("`{}`", types.Name(b)));
   return types.error();

@@ -34,7 +34,8 @@ void Checker::DeclareLocal(const Stmt& stmt) {
   NeedType(stmt.value, type, "the value of a local variable");
   const std::string& name = stmt.names[0];
   const auto known = [&](diag::Span span) {
-    diagnostics_.Report(Kind::kKoordDuplicate, stmt.name_spans[0], fmt::format("there is a `{}` already", name))
+    diagnostics_
+        .Report(Kind::kKoordDuplicate, stmt.name_spans[0], fmt::format("there is a `{}` already", name))
         .At(span, "declared here");
   };
   if (const int v = FindVariable(name); v >= 0) known(model_.variables[static_cast<size_t>(v)].span);

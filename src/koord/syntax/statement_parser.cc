@@ -212,7 +212,8 @@ bool Parser::ParseSimple(std::vector<Stmt>& out) {
   for (const StmtKind kind : {StmtKind::kStop, StmtKind::kBreak, StmtKind::kContinue}) {
     if (Accept(WordsOf(kind).word)) return finish(kind);
   }
-  if (At("pass") && (Peek(1).kind == TokenKind::kNewline || Peek(1).text == ";" || Peek(1).kind == TokenKind::kEnd) &&
+  if (At("pass") &&
+      (Peek(1).kind == TokenKind::kNewline || Peek(1).text == ";" || Peek(1).kind == TokenKind::kEnd) &&
       Accept("pass"))
     return finish(StmtKind::kPass);
   if (At("exit") && Peek(1).kind == TokenKind::kNewline && Accept("exit")) return finish(StmtKind::kStop);
@@ -274,7 +275,8 @@ bool Parser::ParseSimple(std::vector<Stmt>& out) {
 bool Parser::IsForeign() {
   const std::string_view instead = AlternativeFor(Peek().text, WordPlace::kStatement);
   const lang::Token& next = Peek(1);
-  const bool statement = next.kind != TokenKind::kPunctuation || next.text == ":" || next.text == "(" || next.text == "!";
+  const bool statement =
+      next.kind != TokenKind::kPunctuation || next.text == ":" || next.text == "(" || next.text == "!";
   if (instead.empty() || !statement) return false;
   Unexpected("a statement").Help(std::string(instead));
   return true;
