@@ -13,7 +13,7 @@ struct SimulationFiles {
   std::string program;
   std::string spec;  ///< empty: beside the program, if there is one
   std::string fleet;
-  std::string network;  ///< empty: the robots share one store
+  std::string network = {};  ///< empty: the robots share one store
 };
 
 /// Returns the files of a simulation: `NAME`, `NAME.koord`, or `NAME.toml` stand for all three.

@@ -139,6 +139,10 @@ class Texts {
              One({"v -= 1", "v *= 2", "v /= 2", "v--", "pass", "n = v - v", "v = n",
                   "v = v + 1 if b else 0"}) +
              "\n";
+    if (local_ && Pick(8) == 0) {
+      return indent + "while v < n within " + One({"2", "4"}) + ":\n" + indent + "    v += 1\n" + indent + "    " +
+             One({"b = not b", "continue", "n = v", "break"}) + "\n";
+    }
     switch (Pick(depth > 0 ? 11 : 7)) {
       case 0:
         return indent + "n = " + Capped() + "\n";

@@ -119,6 +119,13 @@ void Checker::Statement(const Stmt& stmt) {
       return LoopIn(stmt);
     case StmtKind::kForRange:
       return LoopRange(stmt);
+    case StmtKind::kWhile:
+      NeedBool(stmt.value, "the condition of a loop");
+      NeedType(stmt.operands[0], model_.types.integer(), "the number of iterations");
+      ++loops_;
+      Body(stmt.body);
+      --loops_;
+      return;
     case StmtKind::kAtomic:
       if (place_ != Place::kEvent) misplaced("`atomic` belongs into an event");
       ++atomic_;

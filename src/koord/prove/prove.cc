@@ -88,15 +88,15 @@ class Prover {
       diag::Diagnostics ignored;
       Problems problems(arena, model_, {options_.robots, effort == Effort::kAll}, ignored);
       const Problem problem = StateTask(task, problems, effort);
-      Ask(task, problem, effort);
+      const solve::Query asked = Ask(task, problem, effort);
       task.seconds += std::chrono::duration<double>(Clock::now() - start).count();
       // The question that decided, or the last one.
       const bool last = task.Proved() || effort == Effort::kMore;
       std::optional<solve::Answer> other;
       if (options_.cross_check != nullptr && task.IsObligation() && last) {
-        other = options_.cross_check->Check(problem.query, {options_.timeout, false}, options_.stop);
+        other = options_.cross_check->Check(asked, {options_.timeout, false}, options_.stop);
       }
-      if (!options_.smt_out.empty() && task.IsObligation() && last) WriteFile(task, problem, mutex);
+      if (!options_.smt_out.empty() && task.IsObligation() && last) WriteFile(task, asked, mutex);
       const std::scoped_lock lock(mutex);
       if (other) Compare(task, *other);
       ++done;
@@ -184,7 +184,8 @@ class Prover {
     });
   }
 
-  void Ask(Task& task, const Problem& problem, Effort effort) const {
+  // Returns the question that the answer is to.
+  solve::Query Ask(Task& task, const Problem& problem, Effort effort) const {
     solve::Budget budget{options_.timeout, true};
     // A sanity check that takes long is no reason to wait: it can only warn.
     if (!task.IsObligation()) budget.time = std::min(budget.time, std::chrono::milliseconds(2000));
@@ -193,18 +194,20 @@ class Prover {
     if (effort == Effort::kMore) budget.time = std::min(budget.time, options_.timeout / 4);
     if (effort == Effort::kMost) budget.time = std::min(budget.time, options_.timeout / 20);
     task.answer = options_.solver->Check(problem.query, budget, options_.stop);
-    if (effort != Effort::kMost || !std::holds_alternative<solve::Unknown>(task.answer)) return;
+    if (effort != Effort::kMost || !std::holds_alternative<solve::Unknown>(task.answer)) return problem.query;
     // The instances were too many or too hard: let the solver choose its own.
     solve::Query whole = problem.query;
     whole.assertions = problem.assertions;
     solve::Answer second = options_.solver->Check(whole, budget, options_.stop);
-    if (std::holds_alternative<solve::Unsat>(second)) task.answer = std::move(second);
+    if (!std::holds_alternative<solve::Unsat>(second)) return problem.query;
+    task.answer = std::move(second);
+    return whole;
   }
 
-  void WriteFile(const Task& task, const Problem& problem, std::mutex& mutex) {
+  void WriteFile(const Task& task, const solve::Query& query, std::mutex& mutex) {
     const std::filesystem::path path = options_.smt_out / (task.name + ".smt2");
     const auto written = base::WriteFileAtomically(
-        path, "; unsatisfiable if the obligation holds\n" + solve::ToSmtLib(problem.query));
+        path, "; unsatisfiable if the obligation holds\n" + solve::ToSmtLib(query));
     if (written.ok()) return;
     const std::scoped_lock lock(mutex);
     report_.problems.push_back(fmt::format("{}: {}", path.string(), written.error().message));

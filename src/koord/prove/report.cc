@@ -26,6 +26,8 @@ const char* Describe(CheckKind kind) {
       return "the item to remove may not be in the list";
     case CheckKind::kUnrolling:
       return "the list can be longer than its stated bound";
+    case CheckKind::kRepeating:
+      return "this loop can be repeated more often than it says";
     case CheckKind::kReturn:
       return "this function can end without a value";
     case CheckKind::kChoice:

@@ -23,8 +23,6 @@ constexpr Foreign kForeign[] = {
     {kItem, "variables", "variables stand under `local:`, `allread:` or `allwrite:`"},
     {kItem, "assert", "write `invariant name: ...`"},
     {kItem, "property", "write `invariant name: ...`"},
-    {kStatement, "while",
-     "write a loop with an end, `for i in range(8):`, and leave it with `break`: an event must end"},
     {kStatement, "loop", "write `for i in range(8):`"},
     {kStatement, "repeat", "write `for i in range(8):`"},
     {kStatement, "do", "write `for i in range(8):`"},

@@ -274,6 +274,9 @@ class Formatter {
       case StmtKind::kForRange:
         Line(s.span, fmt::format("for {} = {}, {}:", s.names[0], Text(s.value), Text(s.operands[0])));
         return Body(s.body);
+      case StmtKind::kWhile:
+        Line(s.span, fmt::format("while {} within {}:", Text(s.value), Text(s.operands[0])));
+        return Body(s.body);
       case StmtKind::kAtomic:
         Line(s.span, "atomic:");
         return Body(s.body);

@@ -46,6 +46,8 @@ class Parser : public lang::ExprParser {
   std::vector<Stmt> ParseBlock();
   void ParseStatement(std::vector<Stmt>& out);
   bool ParseSimple(std::vector<Stmt>& out);
+  bool AtWhile() const;
+  void ParseWhile(std::vector<Stmt>& out);
   bool AtLocal() const;
   void AsRange(Stmt& stmt);
   bool IsForeign();

@@ -11,7 +11,32 @@ namespace rondo::koord {
 using diag::Kind;
 using lang::TokenKind;
 
-bool Parser::AtCompound() const { return At("if") || At("for") || At("atomic"); }
+bool Parser::AtCompound() const { return At("if") || At("for") || At("atomic") || AtWhile(); }
+
+// A variable may be called `while`.
+bool Parser::AtWhile() const {
+  if (!At("while")) return false;
+  const lang::Token& next = Peek(1);
+  return next.kind == TokenKind::kName || next.kind == TokenKind::kInt || next.kind == TokenKind::kFloat ||
+         next.text == "(" || next.text == "!" || (next.text == "-" && Peek(2).text != "-" && Peek(2).text != "=");
+}
+
+// while condition within most: body
+void Parser::ParseWhile(std::vector<Stmt>& out) {
+  Stmt stmt;
+  stmt.kind = StmtKind::kWhile;
+  stmt.span = Take().span;
+  stmt.value = ParseExpr();
+  if (!failed() && !Accept("within")) {
+    Unexpected("`within`").Under("after a condition").Help("say how often it is repeated at most: `while ... within 8:`");
+  } else {
+    stmt.operands.push_back(ParseExpr());
+  }
+  stmt.span = stmt.span.To(PreviousSpan());
+  if (failed()) return SkipLine();
+  stmt.body = ParseSuite("the head of a loop");
+  out.push_back(std::move(stmt));
+}
 
 // [:] then a block, or statements on the same line that a block may continue, or one compound statement
 std::vector<Stmt> Parser::ParseSuite(std::string_view after) {
@@ -88,6 +113,8 @@ void Parser::ParseStatement(std::vector<Stmt>& out) {
     ParseIf(out, false);
   } else if (At("for")) {
     ParseFor(out);
+  } else if (AtWhile()) {
+    ParseWhile(out);
   } else if (At("atomic")) {
     Stmt stmt;
     stmt.kind = StmtKind::kAtomic;

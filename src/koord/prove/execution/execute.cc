@@ -147,6 +147,8 @@ void Executor::Execute(const Stmt& stmt) {
       return LoopIn(stmt);
     case StmtKind::kForRange:
       return LoopRange(stmt);
+    case StmtKind::kWhile:
+      return LoopWhile(stmt);
     case StmtKind::kAtomic:
       // One lock for each event; without it the event is a skip, so control gets past this point only with
       // the lock.
@@ -205,6 +207,38 @@ void Executor::LoopRange(const Stmt& stmt) {
   });
 }
 
+// Unrolled as often as it says; that it is not repeated more often must be shown.
+void Executor::LoopWhile(const Stmt& stmt) {
+  const auto most = ConstantInt(Eval(stmt.operands[0]));
+  if (!most || *most > options_.unrolling) {
+    diagnostics_
+        .Report(Kind::kKoordUnboundedLoop, stmt.span,
+                most ? fmt::format("this loop may have more than {} iterations", options_.unrolling)
+                     : "the number of iterations of this loop is not known")
+        .Help(most ? "proofs unroll loops: use a smaller number behind `within`"
+                   : "use a constant behind `within`, or fix the parameter");
+    return;
+  }
+  InLoop([&] {
+    for (int64_t i = 0; i < *most; ++i) Iterate(Eval(stmt.value), stmt.body);
+    Check(CheckKind::kRepeating, stmt.span, arena_.Not(Eval(stmt.value)));
+  });
+}
+
+// One iteration, if there is one.
+void Executor::Iterate(TermId happens, const std::vector<Stmt>& body) {
+  State* whole = frame_.state;
+  State then = *whole;
+  const TermId path = whole->path;
+  then.path = arena_.And(path, happens);
+  frame_.state = &then;
+  Body(body);
+  frame_.state = whole;
+  *whole = Merge(happens, then, *whole);
+  whole->path = path;
+  whole->continued = arena_.False();
+}
+
 // Runs a loop with flags of its own; outside they stay as they are. Nothing happens where control does not
 // get here.
 void Executor::InLoop(const std::function<void()>& iterations) {
@@ -254,16 +288,7 @@ void Executor::LoopIn(const Stmt& stmt) {
       }
       // An iteration beyond the end of the list does not happen.
       const TermId inside = is_list ? arena_.Lt(index, arena_.Length(list)) : arena_.True();
-      State* whole = frame_.state;
-      State then = *whole;
-      const TermId path = whole->path;
-      then.path = arena_.And(path, inside);
-      frame_.state = &then;
-      Body(stmt.body);
-      frame_.state = whole;
-      *whole = Merge(inside, then, *whole);
-      whole->path = path;
-      whole->continued = arena_.False();
+      Iterate(inside, stmt.body);
     }
   });
 }

@@ -16,7 +16,7 @@ namespace rondo::koord {
 
 /// Names why an operation may be undefined: an index, a zero divisor, an absent item, a loop that is longer
 /// than it was unrolled, a function without a result, an `any` without values.
-enum class CheckKind : uint8_t { kIndex, kDivision, kRemove, kUnrolling, kReturn, kChoice };
+enum class CheckKind : uint8_t { kIndex, kDivision, kRemove, kUnrolling, kRepeating, kReturn, kChoice };
 /// States what must hold for one operation to be defined: where control reaches it (`reached`), `holds`.
 struct DefinednessCheck {
   CheckKind kind;
@@ -146,6 +146,8 @@ class Executor {
   void If(const Stmt& stmt);
   void LoopIn(const Stmt& stmt);
   void LoopRange(const Stmt& stmt);
+  void LoopWhile(const Stmt& stmt);
+  void Iterate(TermId happens, const std::vector<Stmt>& body);
   void InLoop(const std::function<void()>& iterations);
   void Assign(ExprId target, TermId value);
   void AssignRoot(size_t variable, TermId value, TermId robot, std::vector<TermId> indices);

@@ -96,6 +96,8 @@ void Compiler::Execute(const Stmt& stmt) {
       return LoopIn(stmt);
     case StmtKind::kForRange:
       return LoopRange(stmt);
+    case StmtKind::kWhile:
+      return LoopWhile(stmt);
     case StmtKind::kAtomic:
       Emit(Op::kLock);
       locks_ = true;
@@ -144,6 +146,37 @@ void Compiler::LoopRange(const Stmt& stmt) {
   Emit(Op::kSetFrame, variable, 1);
   loops_.emplace_back();
   LoopBody(stmt, index, end, {top, empty});
+}
+
+// A counter beside the condition: a loop that is repeated more often than it says has no value.
+void Compiler::LoopWhile(const Stmt& stmt) {
+  const uint32_t index = NewFrame(1);
+  const uint32_t end = NewFrame(1);
+  Gen(stmt.operands[0]);
+  Emit(Op::kSetFrame, end, 1);
+  Constant(0);
+  Emit(Op::kSetFrame, index, 1);
+  const size_t top = Here();
+  Gen(stmt.value);
+  const size_t out = Emit(Op::kJumpUnless);
+  Emit(Op::kFrame, index, 1);
+  Emit(Op::kFrame, end, 1);
+  Emit(Op::kLessInt);
+  const size_t full = Emit(Op::kJumpUnless);
+  loops_.emplace_back();
+  Body(stmt.body);
+  const LoopJumps jumps = std::move(loops_.back());
+  loops_.pop_back();
+  for (const size_t jump : jumps.continues) Patch(jump);
+  Emit(Op::kForNext, index, end, top);
+  Gen(stmt.value);
+  const size_t done = Emit(Op::kJumpUnless);
+  Patch(full);
+  span_ = stmt.span;
+  Emit(Op::kFault, static_cast<size_t>(Fault::kLoop));
+  Patch(done);
+  Patch(out);
+  for (const size_t jump : jumps.breaks) Patch(jump);
 }
 
 void Compiler::LoopIn(const Stmt& stmt) {

@@ -127,6 +127,7 @@ class Compiler {
   void If(const Stmt& stmt);
   void LoopIn(const Stmt& stmt);
   void LoopRange(const Stmt& stmt);
+  void LoopWhile(const Stmt& stmt);
   void LoopBody(const Stmt& stmt, uint32_t index, uint32_t end, const std::vector<size_t>& before);
   void Assign(ExprId target);
   void Store(size_t variable);

@@ -28,6 +28,8 @@ std::string_view Describe(Fault fault) {
       return "there are more than 100,000 ways to choose";
     case Fault::kNoLock:
       return "another robot holds the lock";
+    case Fault::kLoop:
+      return "the loop is repeated more often than it says";
     case Fault::kRunaway:
       return "this runs for more than a hundred million steps";
   }
