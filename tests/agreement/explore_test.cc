@@ -140,8 +140,8 @@ class Texts {
                   "v = v + 1 if b else 0"}) +
              "\n";
     if (local_ && Pick(8) == 0) {
-      return indent + "while v < n within " + One({"2", "4"}) + ":\n" + indent + "    v += 1\n" + indent + "    " +
-             One({"b = not b", "continue", "n = v", "break"}) + "\n";
+      return indent + "while v < n within " + One({"2", "4"}) + ":\n" + indent + "    v += 1\n" + indent +
+             "    " + One({"b = not b", "continue", "n = v", "break"}) + "\n";
     }
     switch (Pick(depth > 0 ? 11 : 7)) {
       case 0:

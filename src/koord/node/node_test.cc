@@ -27,6 +27,7 @@ allread:
     int count[N_sys]
 local:
     bool done = false
+    stream out
 
 Add:
     pre: not done
@@ -37,6 +38,7 @@ Add:
         count[pid] += 1
         done = true
         Motion.v = Motion.x
+        out << "added " << pid
 )";
 
 class Steady : public Sensors {
@@ -169,6 +171,49 @@ TEST_F(NodeTest, ValuesThatAreNoneAreRefused) {
   Reader missing(nowhere);
   cells.Decode(missing, words);
   EXPECT_FALSE(missing.ok());
+}
+
+TEST_F(NodeTest, TellsWhoDidWhatInTheRoundThatWasAppliedLast) {
+  Round(0);
+  EXPECT_TRUE(nodes_[0]->applied().said.empty());
+  Round(1);  // robot 1 gets the lock
+  for (uint32_t r = 0; r < 3; ++r) {
+    const Applied& applied = nodes_[r]->applied();
+    ASSERT_EQ(applied.events.size(), 3U);
+    EXPECT_EQ(applied.events[1], 0U);
+    EXPECT_FALSE(applied.events[0] || applied.events[2]);
+    // What the others offered, and did not get, was neither said nor written.
+    EXPECT_EQ(applied.said.size(), r == 1 ? 2U : 0U);
+    EXPECT_EQ(applied.written.empty(), r != 1);
+  }
+  EXPECT_EQ(nodes_[1]->applied().said[0], "added ");
+  ASSERT_TRUE(nodes_[1]->Load(Store(0)));
+  EXPECT_TRUE(nodes_[1]->applied().events.empty());
+}
+
+TEST_F(NodeTest, WhoeverChoosesMaySkip) {
+  for (const auto& node : nodes_)
+    node->SetChoose([](uint64_t round, size_t robot, std::span<const semantics::Effect> effects) {
+      return round == 0 || robot == 2 ? size_t{0} : effects.size();
+    });
+  Round(0);
+  Round(1);
+  EXPECT_EQ(Show(0, "queue"), "[2]");
+}
+
+TEST(Node, SaysWhyAnEventIsLeftOut) {
+  Compiled program("local:\n    int n = 0\n    int m = 0\nDivide:\n    eff:\n        m = 1 / n\n");
+  const auto team = program.Team(1);
+  Node node(*team, 0, nullptr, 1);
+  Bytes payload;
+  node.Contribute(0, payload);
+  EXPECT_FALSE(node.failed());
+  payload.clear();
+  node.Contribute(1, payload);
+  ASSERT_TRUE(node.failed());
+  EXPECT_EQ(node.failed()->event, 0U);
+  EXPECT_EQ(node.failed()->fault, semantics::Fault::kDivision);
+  EXPECT_TRUE(runtime::rounds::Decode(View(payload))->alternatives.empty());
 }
 
 }  // namespace

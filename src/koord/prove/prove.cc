@@ -206,8 +206,8 @@ class Prover {
 
   void WriteFile(const Task& task, const solve::Query& query, std::mutex& mutex) {
     const std::filesystem::path path = options_.smt_out / (task.name + ".smt2");
-    const auto written = base::WriteFileAtomically(
-        path, "; unsatisfiable if the obligation holds\n" + solve::ToSmtLib(query));
+    const auto written =
+        base::WriteFileAtomically(path, "; unsatisfiable if the obligation holds\n" + solve::ToSmtLib(query));
     if (written.ok()) return;
     const std::scoped_lock lock(mutex);
     report_.problems.push_back(fmt::format("{}: {}", path.string(), written.error().message));

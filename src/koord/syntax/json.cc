@@ -150,8 +150,8 @@ class Writer {
     if (s.target.valid()) j["target"] = Ex(s.target);
     if (s.value.valid())
       j[s.kind == StmtKind::kIf || s.kind == StmtKind::kWhile ? "condition"
-        : s.kind == StmtKind::kForRange ? "first"
-                                        : "value"] = Ex(s.value);
+        : s.kind == StmtKind::kForRange                       ? "first"
+                                                              : "value"] = Ex(s.value);
     if (s.kind == StmtKind::kWhile) j["within"] = Ex(s.operands[0]);
     if (s.kind == StmtKind::kForRange) j["end"] = Ex(s.operands[0]);
     if (s.kind == StmtKind::kStream) {

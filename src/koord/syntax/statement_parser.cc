@@ -18,7 +18,8 @@ bool Parser::AtWhile() const {
   if (!At("while")) return false;
   const lang::Token& next = Peek(1);
   return next.kind == TokenKind::kName || next.kind == TokenKind::kInt || next.kind == TokenKind::kFloat ||
-         next.text == "(" || next.text == "!" || (next.text == "-" && Peek(2).text != "-" && Peek(2).text != "=");
+         next.text == "(" || next.text == "!" ||
+         (next.text == "-" && Peek(2).text != "-" && Peek(2).text != "=");
 }
 
 // while condition within most: body
@@ -28,7 +29,9 @@ void Parser::ParseWhile(std::vector<Stmt>& out) {
   stmt.span = Take().span;
   stmt.value = ParseExpr();
   if (!failed() && !Accept("within")) {
-    Unexpected("`within`").Under("after a condition").Help("say how often it is repeated at most: `while ... within 8:`");
+    Unexpected("`within`")
+        .Under("after a condition")
+        .Help("say how often it is repeated at most: `while ... within 8:`");
   } else {
     stmt.operands.push_back(ParseExpr());
   }
@@ -258,8 +261,13 @@ bool Parser::ParseSimple(std::vector<Stmt>& out) {
     stmt.type = ParseType();
     stmt.name_spans.push_back(Peek().span);
     stmt.names.push_back(ExpectName("the name of a variable"));
-    Expect("=", "the name of a local variable");
-    if (!failed()) stmt.value = ParseExpr();
+    if (!failed() && !Accept("=")) {
+      static const std::vector<std::string> kWords = {"return", "stop", "break", "continue", "pass"};
+      auto& report = Unexpected("`=`").Under("a local variable begins with a value");
+      const std::string near = lang::Suggest(stmt.type.name, kWords);
+      if (!near.empty()) report.Help("did you mean `" + near + "`?");
+    }
+    stmt.value = failed() ? Fail(stmt.span) : ParseExpr();
     return finish(StmtKind::kLocal);
   }
   stmt.target = ParsePostfix();

@@ -4,6 +4,7 @@
 #include <optional>
 #include <queue>
 #include <set>
+#include <tuple>
 #include <vector>
 
 #include "runtime/rounds/core.h"
