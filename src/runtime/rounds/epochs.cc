@@ -108,6 +108,12 @@ void Core::TryEpoch() {
     tried_at_ = now_;
   }
   if (now_ < try_at_ || now_ < give_way_until_) return;
+  // Who can keep nothing lets the ballots of others be: it would only make them begin again.
+  if (disk_failed_) KeepRecord();
+  if (disk_failed_) {
+    try_at_ = now_ + SlowestRepetition();
+    return;
+  }
   ++tries_;
   tried_at_ = now_;
   try_at_ = now_ + settings_.patience / 2 + Turn();

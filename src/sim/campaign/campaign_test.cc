@@ -95,6 +95,19 @@ TEST_F(CampaignTest, APartitionHaltsWaitsOrEvicts) {
   }
 }
 
+// A robot that can keep nothing must not make the attempts of others come to nothing.
+TEST_F(CampaignTest, AFullDiskKeepsNobodyFromGoingOnWhenItIsMended) {
+  Scenario scenario;
+  scenario.seed = 1'002'141;
+  scenario.disks = true;
+  scenario.faults = {{FaultKind::kCrash, 762'857'278, 17'309'178, 1, 0, 0},
+                     {FaultKind::kDiskFull, 1'626'556'921, 1'430'109'071, 1, 0, 0},
+                     {FaultKind::kForget, 1'385'121'860, 455'235'868, 0, 0, 0}};
+  const Outcome outcome = fleet_.Run(scenario);
+  EXPECT_EQ(outcome.stuck, "");
+  EXPECT_EQ(Judged(outcome.record).size(), 0U);
+}
+
 // The judge knows nothing of the protocol; it sees what is planted into a good record.
 TEST_F(CampaignTest, TheJudgeSeesWhatIsPlanted) {
   const Outcome good = Calm(3);
