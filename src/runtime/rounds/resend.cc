@@ -49,7 +49,8 @@ void Core::SendStatus() {
 void Core::Repeat() {
   if (!Waits() || now_ < resend_at_) return;
   ++attempt_;
-  interval_ = std::min(2 * interval_, SlowestRepetition());
+  // Most of what a bad radio loses is there after three more attempts.
+  if (attempt_ >= 3) interval_ = std::min(2 * interval_, SlowestRepetition());
   resend_at_ = now_ + interval_;
   if (disk_failed_) KeepRecord();
   SendStatus();
