@@ -14,7 +14,8 @@ std::vector<double> Ticks(double lo, double hi, size_t most) {
     const double first = std::ceil(lo / step), last = std::floor(hi / step);
     if (!(last - first < static_cast<double>(most))) continue;
     std::vector<double> ticks;
-    for (double k = first; k <= last; ++k) ticks.push_back(k * step);
+    const size_t count = last < first ? 0 : static_cast<size_t>(last - first) + 1;
+    for (size_t k = 0; k < count; ++k) ticks.push_back((first + static_cast<double>(k)) * step);
     return ticks;
   }
   return {};
