@@ -14,8 +14,8 @@
 /// leaves (Koord paper, Figs. 6-8; rules are named at the code that follows them).
 namespace rondo::koord {
 
-/// Names why an operation may be undefined: an index, a zero divisor, an absent item, a loop that is longer
-/// than it was unrolled, a function without a result, an `any` without values.
+/// Names why an operation may be undefined: an index, a zero divisor, an absent item, a loop over a
+/// longer list than was unrolled, one that is repeated more often than it says, a function without a result, an `any` without values.
 enum class CheckKind : uint8_t { kIndex, kDivision, kRemove, kUnrolling, kRepeating, kReturn, kChoice };
 /// States what must hold for one operation to be defined: where control reaches it (`reached`), `holds`.
 struct DefinednessCheck {
