@@ -30,7 +30,6 @@ class Check {
       switch (e.kind) {
         case Kind::kStarted:
         case Kind::kFellBack:
-          break;
         case Kind::kCrashed:
           break;
         case Kind::kAdopted:

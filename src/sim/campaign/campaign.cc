@@ -43,7 +43,7 @@ bool Alike(const Failure& a, const Failure& b) {
 }  // namespace
 
 Failure Shrink(Fleet& fleet, koord::semantics::Team& team, Failure failure, const base::StopToken& stop) {
-  const auto accept = [&](Scenario smaller) {
+  const auto accept = [&](const Scenario& smaller) {
     if (stop.StopRequested()) return false;
     auto other = Try(fleet, team, smaller);
     if (!other || !Alike(failure, *other)) return false;
@@ -56,17 +56,17 @@ Failure Shrink(Fleet& fleet, koord::semantics::Team& team, Failure failure, cons
     for (size_t i = failure.scenario.faults.size(); i-- > 0;) {
       Scenario smaller = failure.scenario;
       smaller.faults.erase(smaller.faults.begin() + static_cast<ptrdiff_t>(i));
-      again = accept(std::move(smaller)) || again;
+      again = accept(smaller) || again;
     }
     for (size_t i = 0; i < failure.scenario.faults.size(); ++i) {
       Scenario smaller = failure.scenario;
       if (smaller.faults[i].length < 20'000'000) continue;
       smaller.faults[i].length /= 2;
-      again = accept(std::move(smaller)) || again;
+      again = accept(smaller) || again;
     }
     Scenario shorter = failure.scenario;
     shorter.rounds /= 2;
-    if (shorter.rounds > 0) again = accept(std::move(shorter)) || again;
+    if (shorter.rounds > 0) again = accept(shorter) || again;
   }
   return failure;
 }

@@ -12,7 +12,7 @@ void Noise::Read(size_t robot, uint64_t, koord::node::Cell cell, std::span<koord
   const lang::Type& shape = team_.model().types[type];
   std::vector<WordKind> kinds;
   Layout::Kinds(team_.model().types, type, kinds);
-  const uint64_t read = base::Mixed(static_cast<uint64_t>(now_) + robot * 64 + cell.variable * 8);
+  const uint64_t read = base::Mixed(static_cast<uint64_t>(now_) + robot * 64 + uint64_t{cell.variable} * 8);
   for (size_t i = 0; i < words.size() && i < kinds.size(); ++i) {
     const uint64_t x = base::Mixed(seed_ ^ base::Mixed(read + i));
     switch (kinds[i]) {
