@@ -131,7 +131,7 @@ campaign::CampaignReport Search(Teams& teams, campaign::CampaignOptions& search,
 
 // Keeps the scenario that fails; returns where.
 std::string Save(const campaign::Failure& failure, const std::string& program, const std::string& path) {
-  const std::string saved =
+  std::string saved =
       path.empty() ? std::filesystem::path(program).stem().string() + ".scenario.toml" : path;
   const auto written =
       base::WriteFileAtomically(saved, campaign::WriteScenario(failure.scenario, campaign::Story(failure)));
