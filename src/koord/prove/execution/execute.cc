@@ -7,7 +7,6 @@
 
 namespace rondo::koord {
 
-using diag::Kind;
 using expr::Rational;
 using lang::ExprKind;
 using lang::TypeKind;
