@@ -131,8 +131,7 @@ campaign::CampaignReport Search(Teams& teams, campaign::CampaignOptions& search,
 
 // Keeps the scenario that fails; returns where.
 std::string Save(const campaign::Failure& failure, const std::string& program, const std::string& path) {
-  std::string saved =
-      path.empty() ? std::filesystem::path(program).stem().string() + ".scenario.toml" : path;
+  std::string saved = path.empty() ? std::filesystem::path(program).stem().string() + ".scenario.toml" : path;
   const auto written =
       base::WriteFileAtomically(saved, campaign::WriteScenario(failure.scenario, campaign::Story(failure)));
   if (written.ok()) return saved;
