@@ -1,7 +1,10 @@
 #include "sim/network.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
+#include "runtime/codec/messages.h"
 #include "sim/cores/fault_file.h"
 #include "sim/fleet/tables.h"
 
@@ -15,6 +18,9 @@ NetworkFaults ReadNetwork(const diag::SourceSet& sources, diag::FileId file, con
   const toml::table root = tables.Root();
   if (diagnostics.errors() != before) return network;
   tables.Known(root, {"network", "fault"}, "a network file");
+  if (fleet.robots.size() > runtime::codec::kMostRobots)
+    tables.Wrong({file, 0, 1}, fmt::format("{} robots are more than can agree over a network ({})",
+                                           fleet.robots.size(), runtime::codec::kMostRobots));
   if (const toml::table* t = tables.Table(root, "network")) {
     tables.Known(*t, {"loss", "duplicate", "corrupt", "delay"}, "`network`");
     auto& c = network.conditions;

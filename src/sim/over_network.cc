@@ -32,7 +32,13 @@ void Run::OverNetwork(double end) {
       break;
     }
     networked_->Until(at(i));
-    if (networked_->broken()) report_.ended = Ending::kFailed;
+    if (networked_->broken()) {
+      diagnostics_
+          .Report(diag::Kind::kKoordFault, {}, fmt::format("at t = {:.6g} s the robots cannot go on", at(i)))
+          .Under(report_.network->happenings.back().what)
+          .Help("this is a mistake of the round protocol: please report it, with the trace");
+      report_.ended = Ending::kFailed;
+    }
     // A round that takes longer counts as several, in all but the first of which everybody skips.
     if (settled_at_ >= 0 && at(i) >= settled_at_ + fleet_.delta) Settle(at(i));
     if (report_.ended != Ending::kTime || !Pass(1, at(i), at(i + 1), i + 1 == steps)) break;

@@ -200,6 +200,10 @@ def networks(rondo, folder):
               f"{text!r}: {done.returncode} {done.stderr}")
     done = run(rondo, "simulate", "examples/koord/lineform", "--network", folder / "none.toml")
     check(done.returncode == 1 and "none.toml" in done.stderr, "a network file that is not there")
+    many = folder / "many.toml"
+    many.write_text((ROOT / "examples/koord/lineform.toml").read_text().replace("count = 16", "count = 300"))
+    done = run(rondo, "simulate", "examples/koord/lineform", "--fleet", many, "--network", radio)
+    check(done.returncode == 1 and "more than can agree" in done.stderr, f"300 robots: {done.stderr}")
 
 
 def main():
