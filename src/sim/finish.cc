@@ -28,10 +28,7 @@ void Run::Finish() {
   if (networked_ != nullptr) {
     for (Violation& v : networked_->violations()) report_.violations.push_back(std::move(v));
     report_.plans = networked_->plans();
-    std::vector<Happening> happenings;
-    if (report_.network) happenings = std::move(report_.network->happenings);
     report_.network = networked_->Report();
-    report_.network->happenings = std::move(happenings);
   }
   if (const auto map = SharedMap()) {
     std::vector<Point> starts;

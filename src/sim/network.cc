@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 
 #include "runtime/codec/messages.h"
 #include "sim/cores/fault_file.h"
@@ -27,8 +27,8 @@ NetworkFaults ReadNetwork(const diag::SourceSet& sources, diag::FileId file, con
     c.loss = tables.Number(*t, "loss", 0, 0, 1);
     c.duplicate = tables.Number(*t, "duplicate", 0, 0, 1);
     c.corrupt = tables.Number(*t, "corrupt", 0, 0, 1);
-    const double most = tables.Number(*t, "delay", static_cast<double>(c.most) * 1e-9, 0, 1000);
-    c.most = static_cast<cores::Time>(std::llround(most * 1e9));
+    const double most = tables.Number(*t, "delay", cores::Seconds(c.most), 0, 1000);
+    c.most = cores::Nanoseconds(most);
     c.least = std::min(c.least, c.most);
   }
   std::vector<std::string> names;

@@ -3,21 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
+#include "base/check.h"
 #include "base/mixed.h"
 #include "sim/uniform.h"
 
 namespace rondo::sim {
 
 namespace rounds = runtime::rounds;
+using cores::Nanoseconds;
 using koord::semantics::Effect;
-
-namespace {
-
-cores::Time Nanoseconds(double seconds) { return static_cast<cores::Time>(std::llround(seconds * 1e9)); }
-
-}  // namespace
 
 cores::Setup Networked::SetupOf(const Fleet& fleet, const SimulationOptions& options) {
   cores::Setup setup;
@@ -43,12 +38,11 @@ Networked::Networked(const koord::Model& model, const Fleet& fleet, const Simula
       stage_(stage),
       machines_(fleet.robots.size()),
       cores_(SetupOf(fleet, options), *this) {
-  for (uint32_t r = 0; r < machines_.size() && good_; ++r) {
+  for (uint32_t r = 0; r < machines_.size(); ++r) {
     Machine& m = machines_[r];
     m.functions = std::make_unique<Functions>(model, fleet, options.seed);
     m.team = make(*m.functions);
-    good_ = m.team != nullptr;
-    if (!good_) return;
+    CHECK(m.team != nullptr) << "a program that was compiled once is not compiled again";
     m.functions->Attach(*m.team, bodies);
     m.senses = std::make_unique<Senses>(stage_, m.team->heap());
     m.node = std::make_unique<koord::node::Node>(*m.team, r, m.senses.get(), options.seed);
@@ -82,7 +76,7 @@ void Networked::Start(runtime::codec::Bytes store) {
 
 void Networked::Until(double time) {
   const cores::Time until = Nanoseconds(time);
-  while (!broken_ && cores_.Next(until)) {
+  while (broken_.empty() && cores_.Next(until)) {
   }
 }
 
@@ -112,11 +106,16 @@ rounds::Program& Networked::Begin(uint32_t r) {
   m.node->Load(store_);
   m.contributed = {};
   m.acted = 0;
-  if (cores_.incarnation(r) > 1) stage_.Happens(static_cast<int>(r), "starts again");
+  if (cores_.incarnation(r) > 1) Happens(static_cast<int>(r), "starts again");
   return *m.node;
 }
 
-void Networked::Crashed(uint32_t r) { stage_.Happens(static_cast<int>(r), "crashes"); }
+void Networked::Crashed(uint32_t r) { Happens(static_cast<int>(r), "crashes"); }
+
+void Networked::Happens(int robot, const std::string& what) {
+  report_.happenings.push_back({now(), robot, what});
+  stage_.Happens(robot, what);
+}
 
 void Networked::On(uint32_t r, const rounds::Output& output) {
   std::visit([&](const auto& o) { Do(r, o); }, output);
@@ -138,7 +137,7 @@ void Networked::Do(uint32_t r, const rounds::Contributed& c) {
 void Networked::Do(uint32_t r, const rounds::Committed& c) {
   Machine& m = machines_[r];
   if (m.contributed.epoch == c.at.epoch && m.contributed.round + 1 == c.at.round)
-    report_.waits.push_back(static_cast<double>(cores_.now() - m.contributed_at) * 1e-9);
+    report_.waits.push_back(cores::Seconds(cores_.now() - m.contributed_at));
   if (c.at.round <= committed_) return;
   committed_ = c.at.round;
   stage_.Committed(committed_, *m.node);
@@ -153,7 +152,7 @@ void Networked::Do(uint32_t r, const rounds::Act& act) {
 
 void Networked::Do(uint32_t r, const rounds::FallBack&) {
   ++report_.fallbacks;
-  stage_.Happens(static_cast<int>(r), "falls back");
+  Happens(static_cast<int>(r), "falls back");
 }
 
 void Networked::Do(uint32_t, const rounds::Adopted& adopted) {
@@ -163,12 +162,12 @@ void Networked::Do(uint32_t, const rounds::Adopted& adopted) {
   std::vector<std::string> names;
   for (const auto& member : adopted.decision.members) names.push_back(fleet_.robots[member.robot].name);
   if (epoch_ > 1 || names.size() < fleet_.robots.size())
-    stage_.Happens(-1, fmt::format("the team is {}", fmt::join(names, ", ")));
+    Happens(-1, fmt::format("the team is {}", fmt::join(names, ", ")));
 }
 
 void Networked::Do(uint32_t r, const rounds::Broken& broken) {
-  broken_ = true;
-  stage_.Happens(static_cast<int>(r), broken.what);
+  broken_ = broken.what;
+  Happens(static_cast<int>(r), broken_);
 }
 
 }  // namespace rondo::sim

@@ -37,21 +37,20 @@ class Stage {
 class Networked : cores::Robots {
  public:
   using MakeTeam = std::function<std::unique_ptr<koord::semantics::Team>(Functions& functions)>;
-  /// @param make  compiles the program for all robots; nullptr, after a report, if it cannot.
+  /// @param make  compiles the program for all robots; it has been compiled before.
   /// @param bodies, stage  outlive this.
   Networked(const koord::Model& model, const Fleet& fleet, const SimulationOptions& options,
             const std::vector<std::unique_ptr<Body>>& bodies, const MakeTeam& make,
             diag::Diagnostics& diagnostics, Stage& stage);
 
-  /// Reports whether every robot has its program.
-  bool good() const { return good_; }
   /// Begins the first life of every robot.
   /// @param store  the one before `init`, as `Node::Save` writes it.
   void Start(runtime::codec::Bytes store);
   /// Lets everything happen up to this moment, in seconds.
   void Until(double time);
-  double now() const { return static_cast<double>(cores_.now()) * 1e-9; }
-  bool broken() const { return broken_; }
+  double now() const { return cores::Seconds(cores_.now()); }
+  /// Returns what a core found broken; empty if all is well.
+  const std::string& broken() const { return broken_; }
 
   /// Returns what the network did. To be called once, at the end.
   NetworkReport Report();
@@ -87,6 +86,7 @@ class Networked : cores::Robots {
   size_t Choose(uint64_t round, size_t robot, std::span<const koord::semantics::Effect> effects) const;
   runtime::rounds::Program& Begin(uint32_t robot) override;
   void Crashed(uint32_t robot) override;
+  void Happens(int robot, const std::string& what);
   void On(uint32_t robot, const runtime::rounds::Output& output) override;
   void Do(uint32_t robot, const runtime::rounds::Send& send);
   void Do(uint32_t robot, const runtime::rounds::Contributed& contributed);
@@ -100,8 +100,7 @@ class Networked : cores::Robots {
   const Fleet& fleet_;
   const SimulationOptions& options_;
   Stage& stage_;
-  bool good_ = true;
-  bool broken_ = false;
+  std::string broken_;
   std::vector<Machine> machines_;
   runtime::codec::Bytes store_;
   cores::Cores cores_;

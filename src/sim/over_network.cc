@@ -12,14 +12,9 @@ using koord::node::Node;
 
 // The world goes on in steps of the controllers; between them, whatever the network brings happens.
 void Run::OverNetwork(double end) {
-  report_.network.emplace();
   networked_ = std::make_unique<Networked>(
       model_, fleet_, options_, bodies_, [this](Functions& functions) { return NewTeam(functions); },
       diagnostics_, static_cast<Stage&>(*this));
-  if (!networked_->good()) {
-    report_.ended = Ending::kFailed;
-    return;
-  }
   runtime::codec::Bytes before;
   store_->Save(before);
   networked_->Start(std::move(before));
@@ -32,10 +27,10 @@ void Run::OverNetwork(double end) {
       break;
     }
     networked_->Until(at(i));
-    if (networked_->broken()) {
+    if (!networked_->broken().empty()) {
       diagnostics_
           .Report(diag::Kind::kKoordFault, {}, fmt::format("at t = {:.6g} s the robots cannot go on", at(i)))
-          .Under(report_.network->happenings.back().what)
+          .Under(networked_->broken())
           .Help("this is a mistake of the round protocol: please report it, with the trace");
       report_.ended = Ending::kFailed;
     }
@@ -98,9 +93,7 @@ void Run::Acts(size_t robot, Heap& heap, const Node& node) {
 }
 
 void Run::Happens(int robot, const std::string& what) {
-  const double t = networked_->now();
-  report_.network->happenings.push_back({t, robot, what});
-  recorder_.Event(t, {{"event", "network"}, {"robot", robot}, {"what", what}});
+  recorder_.Event(networked_->now(), {{"event", "network"}, {"robot", robot}, {"what", what}});
 }
 
 void Run::Fails(size_t robot, const koord::node::Failure& failure) {

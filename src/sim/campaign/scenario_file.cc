@@ -2,20 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <sstream>
 
 #include "sim/cores/fault_file.h"
+#include "sim/fleet/on_loss.h"
 #include "sim/fleet/tables.h"
 
 namespace rondo::sim::campaign {
 
-using runtime::rounds::OnLoss;
-
 namespace {
-
-Time Nanoseconds(double seconds) { return static_cast<Time>(std::llround(seconds * 1e9)); }
-std::string Seconds(Time time) { return fmt::format("{:.9f}", static_cast<double>(time) * 1e-9); }
 
 class Reader : Tables {
  public:
@@ -44,13 +39,10 @@ class Reader : Tables {
     s.seed = Whole(t, "seed", 1, 0, 9e15);
     s.robots = Whole(t, "robots", 3, 1, static_cast<double>(kMostRobots));
     s.rounds = Whole(t, "rounds", 30, 1, 1e6);
-    const std::string on_loss = Word(t, "on_loss", "wait", {"halt", "wait", "evict"});
-    s.on_loss = on_loss == "halt" ? OnLoss::kHalt : on_loss == "evict" ? OnLoss::kEvict : OnLoss::kWait;
-    if (s.on_loss == OnLoss::kEvict && s.robots == 2 && t.get("on_loss") != nullptr)
-      Wrong(At(*t.get("on_loss")), "two robots have no majority without each other, so none can be evicted");
+    s.on_loss = ReadOnLoss(*this, t, s.on_loss, s.robots);
     s.disks = Flag(t, "disks", false);
     const auto seconds = [&](const char* name, Time usual) {
-      return Nanoseconds(Number(t, name, static_cast<double>(usual) * 1e-9, 1e-3, 1e4));
+      return cores::Nanoseconds(Number(t, name, static_cast<double>(usual) * 1e-9, 1e-3, 1e4));
     };
     s.delta = seconds("delta", s.delta);
     s.lease = seconds("lease", s.lease);
@@ -83,10 +75,10 @@ std::string WriteScenario(const Scenario& s, const std::string& comment) {
   std::istringstream lines(comment);
   for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
   text += fmt::format(
-      "[[scenario]]\nseed = {}\nrobots = {}\nrounds = {}\non_loss = \"{}\"\ndisks = {}\ndelta = {}\nlease = {}\n"
-      "stop_time = {}\npatience = {}\n",
-      s.seed, s.robots, s.rounds, Name(s.on_loss), s.disks, Seconds(s.delta), Seconds(s.lease),
-      Seconds(s.stop_time), Seconds(s.patience));
+      "[[scenario]]\nseed = {}\nrobots = {}\nrounds = {}\non_loss = \"{}\"\ndisks = {}\ndelta = {:.9f}\nlease = {:.9f}\n"
+      "stop_time = {:.9f}\npatience = {:.9f}\n",
+      s.seed, s.robots, s.rounds, Name(s.on_loss), s.disks, cores::Seconds(s.delta), cores::Seconds(s.lease),
+      cores::Seconds(s.stop_time), cores::Seconds(s.patience));
   for (const Fault& f : s.faults) text += "\n[[scenario.fault]]\n" + cores::WriteFault(f);
   return text;
 }

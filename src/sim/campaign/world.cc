@@ -39,7 +39,7 @@ class World : cores::Robots {
 
   Outcome Run() {
     cores_.Start();
-    while (!Over() && cores_.Next(INT64_MAX)) {
+    while (!Over() && cores_.Next(cores::kNever)) {
     }
     out_.time = cores_.now();
     out_.datagrams = cores_.datagrams();

@@ -60,8 +60,7 @@ std::string Tell(const Fault& f) {
     }
     return "";
   };
-  return fmt::format("from {:.3f} s on, for {:.3f} s: {}", static_cast<double>(f.at) * 1e-9,
-                     static_cast<double>(f.length) * 1e-9, what());
+  return fmt::format("from {:.3f} s on, for {:.3f} s: {}", Seconds(f.at), Seconds(f.length), what());
 }
 
 }  // namespace rondo::sim::cores

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -10,6 +11,10 @@
 namespace rondo::sim::cores {
 
 using transport::simulated::Time;
+
+/// Converts seconds, as files and people have them, to the nearest time; and back.
+inline Time Nanoseconds(double seconds) { return static_cast<Time>(std::llround(seconds * 1e9)); }
+inline double Seconds(Time time) { return static_cast<double>(time) * 1e-9; }
 
 /// Names what goes wrong for a while.
 enum class FaultKind : uint8_t {

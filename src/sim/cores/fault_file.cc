@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace rondo::sim::cores {
 namespace {
@@ -14,9 +13,6 @@ std::vector<std::string> Kinds() {
     names.emplace_back(Name(static_cast<FaultKind>(k)));
   return names;
 }
-
-Time Nanoseconds(double seconds) { return static_cast<Time>(std::llround(seconds * 1e9)); }
-double Seconds(Time time) { return static_cast<double>(time) * 1e-9; }
 
 uint32_t Robot(Tables& tables, const toml::table& t, const char* key, size_t robots,
                std::span<const std::string> names) {

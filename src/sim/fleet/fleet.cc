@@ -6,13 +6,13 @@
 #include <set>
 
 #include "lang/suggest.h"
+#include "sim/fleet/on_loss.h"
 #include "sim/fleet/tables.h"
 
 namespace rondo::sim {
 namespace {
 
 using diag::Kind;
-using runtime::rounds::OnLoss;
 
 class Reader : Tables {
  public:
@@ -114,10 +114,7 @@ class Reader : Tables {
     rounds.stop_time = fleet_.delta;
     if (t == nullptr) return;
     Known(*t, {"on_loss", "disks", "lease", "stop_time", "patience"}, "`rounds`");
-    const std::string on_loss = Word(*t, "on_loss", "halt", {"halt", "wait", "evict"});
-    rounds.on_loss = on_loss == "wait" ? OnLoss::kWait : on_loss == "evict" ? OnLoss::kEvict : OnLoss::kHalt;
-    if (rounds.on_loss == OnLoss::kEvict && fleet_.robots.size() == 2)
-      Wrong(At(*t->get("on_loss")), "two robots have no majority without each other, so none can be evicted");
+    rounds.on_loss = ReadOnLoss(*this, *t, rounds.on_loss, fleet_.robots.size());
     rounds.disks = Flag(*t, "disks", false);
     rounds.lease = Number(*t, "lease", rounds.lease, 1e-3, 1e4);
     rounds.stop_time = Number(*t, "stop_time", rounds.stop_time, 0, 1e4);
