@@ -119,6 +119,7 @@ enum class Kind : uint8_t {
   kKoordSectionOrder,
   kKoordPointlessSpec,
   kKoordSpecScope,
+  kKoordFallback,
   // Koord: proving.
   kKoordUnboundedLoop,
   kKoordNoInvariant,

@@ -42,6 +42,22 @@ constexpr KindInfo kTable[] = {
      "assumption mentions the ports of the robot's own module. A program reads its own ports; only specifications read\n"
      "another robot's. `old(e)` stands behind `always`.",
      "local:\n    int n\nStep:\n    eff:\n        n = 1\nassume n > 0\n", "check"},
+    {Kind::kKoordFallback, "koord-fallback", Severity::kError, "a fallback that cannot run at any moment",
+     "`fallback M:` says what the actuators of module M get when a robot has lost the others. It runs at once and alone, so\n"
+     "it reads the robot's own sensors, parameters and `pid`, and sets actuators of M: nothing that the team agrees on.",
+     "using Motion:\n"
+     "    sensors:\n"
+     "        pos psn\n"
+     "    actuators:\n"
+     "        pos target\n"
+     "allwrite:\n"
+     "    pos home\n"
+     "Step:\n"
+     "    eff:\n"
+     "        Motion.target = home\n"
+     "fallback Motion:\n"
+     "    target = home\n",
+     "check"},
 };
 
 }  // namespace

@@ -14,14 +14,18 @@ constexpr size_t kMostTries = 1'000'000;
 }  // namespace
 
 Explainer::Explainer(koord::semantics::Team& team) : team_(team), transition_(team), options_(team.robots()) {
+  covered_.resize(team.layout().block_words());
   for (size_t v = 0; v < team.model().variables.size(); ++v) {
+    if (team.model().FallsBack(v) && team.layout()[v].exists)
+      std::fill_n(covered_.begin() + team.layout()[v].at, team.layout()[v].words(), true);
     if (team.model().variables[v].kind == koord::VariableKind::kSensor && team.layout()[v].exists)
       sensors_.push_back(v);
   }
 }
 
 std::optional<Explanation> Explainer::Explain(std::span<const Word> before, std::span<const Word> after,
-                                              bool init, const std::vector<bool>& may_skip) {
+                                              bool init, const std::vector<bool>& may_skip,
+                                              const std::vector<std::vector<Word>>& fallen) {
   start_.assign(before.begin(), before.end());
   for (const size_t v : sensors_) {
     for (size_t r = 0; r < team_.robots(); ++r) {
@@ -32,6 +36,7 @@ std::optional<Explanation> Explainer::Explain(std::span<const Word> before, std:
   after_ = after;
   init_ = init;
   may_skip_ = &may_skip;
+  fallen_ = &fallen;
   if (init)
     transition_.PrepareInit(start_);
   else
@@ -56,6 +61,10 @@ std::optional<Explanation> Explainer::Explain(std::span<const Word> before, std:
   return found_;
 }
 
+bool Explainer::Writes(const Effect* effect, uint32_t at) {
+  return effect != nullptr && std::ranges::any_of(effect->own, [&](const auto& w) { return w.at == at; });
+}
+
 // Does the robot's own block become what it is at the end?
 bool Explainer::Fits(size_t robot, const Effect* effect) {
   const auto& layout = team_.layout();
@@ -69,8 +78,14 @@ bool Explainer::Fits(size_t robot, const Effect* effect) {
       start_[w.at] = w.value;
     }
   }
-  const bool fits = std::equal(start_.begin() + first, start_.begin() + first + layout.block_words(),
-                               after_.begin() + first);
+  const std::vector<Word>* fallen =
+      robot < fallen_->size() && !(*fallen_)[robot].empty() ? &(*fallen_)[robot] : nullptr;
+  bool fits = true;
+  for (uint32_t k = 0; k < layout.block_words() && fits; ++k) {
+    const uint32_t at = first + k;
+    const bool set = fallen != nullptr && covered_[k] && (*fallen)[at] == after_[at] && !Writes(effect, at);
+    fits = start_[at] == after_[at] || set;
+  }
   for (auto it = undo.rbegin(); it != undo.rend(); ++it) start_[it->first] = it->second;
   return fits;
 }

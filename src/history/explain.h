@@ -28,10 +28,14 @@ class Explainer {
   /// Returns how `after` follows from `before`; nothing if it does not.
   /// @param init  it is the one execution of `init`, in which nobody skips.
   /// @param may_skip  by robot: it takes no part, so that it skips whatever is urgent.
+  /// @param fallen  by robot: the state in which it fell back last, or nothing. What fallbacks set may have become part
+  /// of the state at any moment since.
   std::optional<Explanation> Explain(std::span<const Word> before, std::span<const Word> after, bool init,
-                                     const std::vector<bool>& may_skip);
+                                     const std::vector<bool>& may_skip,
+                                     const std::vector<std::vector<Word>>& fallen = {});
 
  private:
+  static bool Writes(const koord::semantics::Effect* effect, uint32_t at);
   bool Fits(size_t robot, const koord::semantics::Effect* effect);
   bool Try(size_t robot);
   bool Locks();
@@ -40,12 +44,14 @@ class Explainer {
   koord::semantics::Team& team_;
   koord::semantics::ProgramTransition transition_;
   std::vector<size_t> sensors_;  // variables
+  std::vector<bool> covered_;    // by word of a robot's block: an actuator with a fallback
   std::vector<Word> start_;      // the state at the start, with the sensors of this round
   std::span<const Word> after_;
   std::vector<std::vector<int>> options_;  // by robot: what fits what it alone writes
   Explanation found_;
   bool init_ = false;
   const std::vector<bool>* may_skip_ = nullptr;
+  const std::vector<std::vector<Word>>* fallen_ = nullptr;
   size_t tried_ = 0;
 };
 

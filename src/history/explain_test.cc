@@ -118,5 +118,40 @@ TEST(Image, AStateComesBackInAnotherHeap) {
     EXPECT_TRUE(StateOf(*two, std::span(image).first(length)).empty()) << length;
 }
 
+TEST(Explain, WhatAFallbackSetBecomesPartOfTheState) {
+  koord::node::Compiled program(
+      "using M:\n    sensors:\n        int at\n    actuators:\n        int to\n        int free\n"
+      "using Lamp:\n    actuators:\n        int color\n"
+      "Go:\n    pre: M.at == 1\n    eff:\n        M.to = 5\n"
+      "fallback M:\n    to = at\n");
+  const auto team = program.Team(1);
+  Explainer explainer(*team);
+  std::vector<Word> before = team->blank();
+  const auto address = [&](const std::string& name) {
+    for (size_t v = 0; v < team->model().variables.size(); ++v) {
+      if (team->model().variables[v].name == name) return team->layout().Address(v, 0);
+    }
+    ADD_FAILURE() << name;
+    return 0U;
+  };
+  const auto explains = [&](Word at, Word to, Word color, const std::vector<std::vector<Word>>& fallen) {
+    std::vector<Word> after = before;
+    after[address("M.at")] = at;
+    after[address("M.to")] = to;
+    after[address("Lamp.color")] = color;
+    return explainer.Explain(before, after, false, {false}, fallen).has_value();
+  };
+  std::vector<Word> fell = before;
+  fell[address("M.to")] = 3;
+  fell[address("Lamp.color")] = 3;
+  EXPECT_FALSE(explains(0, 3, 0, {}));
+  EXPECT_FALSE(explains(0, 3, 0, {{}}));
+  EXPECT_TRUE(explains(0, 3, 0, {fell}));
+  EXPECT_TRUE(explains(0, 0, 0, {fell}));   // not yet
+  EXPECT_TRUE(explains(1, 5, 0, {fell}));   // an event writes over it
+  EXPECT_FALSE(explains(0, 4, 0, {fell}));  // something else
+  EXPECT_FALSE(explains(0, 3, 3, {fell}));  // Lamp has no fallback
+}
+
 }  // namespace
 }  // namespace rondo::history

@@ -29,8 +29,10 @@ class Check {
       }
       switch (e.kind) {
         case Kind::kStarted:
-        case Kind::kFellBack:
         case Kind::kCrashed:
+          break;
+        case Kind::kFellBack:
+          FellBack(e);
           break;
         case Kind::kAdopted:
           Adopted(e);
@@ -64,6 +66,23 @@ class Check {
     return it != members_.end() && std::ranges::find(it->second, life) != it->second.end();
   }
 
+  // Who runs the fallbacks again on what the sensors read then gets the same.
+  void FellBack(const Entry& e) {
+    if (team_.fallbacks().empty()) return;
+    if (e.what >= record_.images.size()) return Say(Wrong::kUnreadable, "there is no such state");
+    const std::vector<Word> seen = StateOf(team_, record_.images[e.what]);
+    if (seen.empty()) return Say(Wrong::kUnreadable, "an image is none of this program's");
+    std::vector<Word> again = seen;
+    koord::semantics::Machine& machine = team_.machine();
+    machine.SetMemory(again.data());
+    for (const auto& code : team_.fallbacks()) {
+      if (!machine.Run(code.body, e.robot, false)) machine.Undo();
+    }
+    if (again != seen)
+      Say(Wrong::kNoFallback, Of(e) + " has lost the others and does not do what its fallback says");
+    fallen_[e.robot] = e.what;
+  }
+
   void Adopted(const Entry& e) {
     if (e.what >= record_.members.size()) return Say(Wrong::kUnreadable, "there is no such list of members");
     const auto [it, fresh] = members_.emplace(e.epoch, record_.members[e.what]);
@@ -77,6 +96,9 @@ class Check {
     if (!fresh && record_.texts[it->second] != record_.texts[e.what])
       Say(Wrong::kTwice, fmt::format("{} says two different things in round {}", Of(e), e.round));
     if (fresh) spoke_[{LifeOf(e), e.epoch, e.round}] = e.time;
+    // What it set before it speaks can be part of what it says.
+    if (const auto fell = fallen_.find(e.robot); fresh && fell != fallen_.end())
+      fell_before_[{e.robot, e.epoch, e.round}] = fell->second;
     const auto acted = last_acted_.find(e.robot);
     if (acted != last_acted_.end() && e.round < acted->second)
       Say(Wrong::kWithdrawn,
@@ -118,7 +140,12 @@ class Check {
       for (const Life& life : it->second) may_skip[life.robot] = false;
     }
     ++rounds_;
-    const auto how = explainer_.Explain(from, to, e.round == 1, may_skip);
+    std::vector<std::vector<Word>> fallen(record_.robots);
+    for (uint32_t r = 0; r < record_.robots; ++r) {
+      const auto it = fell_before_.find({r, e.epoch, e.round - 1});
+      if (it != fell_before_.end()) fallen[r] = StateOf(team_, record_.images[it->second]);
+    }
+    const auto how = explainer_.Explain(from, to, e.round == 1, may_skip, fallen);
     if (!how)
       return Say(
           Wrong::kNoRound,
@@ -207,9 +234,12 @@ class Check {
   std::map<uint64_t, size_t> final_;                               // by round: images
   std::map<std::tuple<Life, uint64_t, uint64_t>, size_t> said_;    // texts
   std::map<std::tuple<Life, uint64_t, uint64_t>, int64_t> spoke_;  // times
-  std::map<uint32_t, uint64_t> last_acted_;                        // by robot: rounds
-  std::map<std::pair<uint64_t, uint32_t>, size_t> waits_;          // by epoch and robot: rounds in a row
-  std::vector<size_t> acts_;                                       // entries
+  std::map<uint32_t, size_t> fallen_;                              // by robot: images
+  std::map<std::tuple<uint32_t, uint64_t, uint64_t>, size_t>
+      fell_before_;                                        // a robot spoke in a round: images
+  std::map<uint32_t, uint64_t> last_acted_;                // by robot: rounds
+  std::map<std::pair<uint64_t, uint32_t>, size_t> waits_;  // by epoch and robot: rounds in a row
+  std::vector<size_t> acts_;                               // entries
 };
 
 }  // namespace
@@ -241,6 +271,8 @@ std::string_view Name(Wrong wrong) {
       return "starved";
     case Wrong::kWithdrawn:
       return "withdrawn";
+    case Wrong::kNoFallback:
+      return "no-fallback";
     case Wrong::kUnreadable:
       return "unreadable";
   }
@@ -267,6 +299,8 @@ std::string_view Meaning(Wrong wrong) {
       return "a robot never gets a lock";
     case Wrong::kWithdrawn:
       return "a robot repeats a round on which it has acted";
+    case Wrong::kNoFallback:
+      return "a robot that has lost the others does not do what its fallback says";
     case Wrong::kUnreadable:
       return "the record makes no sense";
   }

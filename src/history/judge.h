@@ -20,6 +20,7 @@ enum class Wrong : uint8_t {
   kTwice,       ///< one life said two different things in one round
   kStarved,     ///< a robot wanted a lock in as many rounds as there are robots, and never got it
   kWithdrawn,   ///< a robot went back behind a state on which it had acted
+  kNoFallback,  ///< a robot fell back, and its actuators are not what the program says
   kUnreadable,  ///< the record itself makes no sense
 };
 /// Returns the name as files have it (`diverged`, `no-round`, ...), and what it means in a sentence.

@@ -27,9 +27,11 @@ enum class Kind : uint8_t {
   kStored,       ///< it has the state at the start of a round
   kCommitted,    ///< it knows that this state is final
   kActed,        ///< its actuators and streams got what the state says
-  kFellBack,     ///< it acts no more
+  kFellBack,     ///< it acts no more; its actuators are as its fallback says
   kAdopted,      ///< it learned who takes part from now on
 };
+
+constexpr size_t kNothing = SIZE_MAX;
 
 /// Holds one line of a log.
 struct Entry {
@@ -39,7 +41,9 @@ struct Entry {
   uint32_t robot = 0;
   uint64_t incarnation = 0;
   uint64_t epoch = 0, round = 0;
-  size_t what = 0;  ///< kStored: which image; kContributed: which text; kAdopted: which list of members
+  /// kStored, kFellBack: which image; kContributed: which text; kAdopted: which list of members. kFellBack without fallbacks
+  /// in the program: `kNothing`.
+  size_t what = 0;
 };
 
 /// Names one life of a robot.

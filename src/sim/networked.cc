@@ -106,7 +106,10 @@ rounds::Program& Networked::Begin(uint32_t r) {
   m.node->Load(store_);
   m.contributed = {};
   m.acted = 0;
-  if (cores_.incarnation(r) > 1) Happens(static_cast<int>(r), "starts again");
+  if (cores_.incarnation(r) > 1) {
+    Happens(static_cast<int>(r), "starts again");
+    FallBack(r);  // what its actuators do after a crash, nobody knows
+  }
   return *m.node;
 }
 
@@ -147,12 +150,18 @@ void Networked::Do(uint32_t r, const rounds::Act& act) {
   Machine& m = machines_[r];
   if (act.at.round <= m.acted) return;
   m.acted = act.at.round;
-  stage_.Acts(r, m.team->heap(), *m.node);
+  stage_.Acts(r, m.team->heap(), *m.node, m.node->Act());
 }
 
 void Networked::Do(uint32_t r, const rounds::FallBack&) {
   ++report_.fallbacks;
   Happens(static_cast<int>(r), "falls back");
+  FallBack(r);
+}
+
+void Networked::FallBack(uint32_t r) {
+  Machine& m = machines_[r];
+  stage_.FallsBack(r, *m.node, m.node->FallBack(m.acted));
 }
 
 void Networked::Do(uint32_t, const rounds::Adopted& adopted) {

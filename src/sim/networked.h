@@ -25,8 +25,13 @@ class Stage {
   virtual void Contributed(size_t robot) = 0;
   /// Says that a round is final, which no robot knew before. The node has its store.
   virtual void Committed(uint64_t round, const koord::node::Node& node) = 0;
-  /// Says that a robot acts on its store.
-  virtual void Acts(size_t robot, Heap& heap, const koord::node::Node& node) = 0;
+  /// Says that a robot acts on its store: these actuators get what it says.
+  virtual void Acts(size_t robot, Heap& heap, const koord::node::Node& node,
+                    const std::vector<koord::node::Cell>& commands) = 0;
+  /// Says that a robot acts no more: its actuators get what the fallbacks of the program say, and hold where there are
+  /// none. `covered`: the former.
+  virtual void FallsBack(size_t robot, const koord::node::Node& node,
+                         const std::vector<koord::node::Cell>& covered) = 0;
   /// Says what happens to the team, for reports.
   virtual void Happens(int robot, const std::string& what) = 0;
   /// Says that an operation of an event has no value.
@@ -86,6 +91,7 @@ class Networked : cores::Robots {
   size_t Choose(uint64_t round, size_t robot, std::span<const koord::semantics::Effect> effects) const;
   runtime::rounds::Program& Begin(uint32_t robot) override;
   void Crashed(uint32_t robot) override;
+  void FallBack(uint32_t robot);
   void Happens(int robot, const std::string& what);
   void On(uint32_t robot, const runtime::rounds::Output& output) override;
   void Do(uint32_t robot, const runtime::rounds::Send& send);

@@ -15,6 +15,7 @@ void Run::OverNetwork(double end) {
   networked_ = std::make_unique<Networked>(
       model_, fleet_, options_, bodies_, [this](Functions& functions) { return NewTeam(functions); },
       diagnostics_, static_cast<Stage&>(*this));
+  fallen_.resize(bodies_.size());
   runtime::codec::Bytes before;
   store_->Save(before);
   networked_->Start(std::move(before));
@@ -61,7 +62,13 @@ void Run::Committed(uint64_t round, const Node& node) {
   runtime::codec::Bytes bytes;
   node.Save(bytes);
   store_->Load(bytes);
-  state_ = store_->state();
+  const std::vector<Word> was = std::exchange(state_, store_->state());
+  // Who fell back does what its fallback says until it acts again, whatever the team knows of it.
+  for (size_t r = 0; r < fallen_.size(); ++r) {
+    for (const koord::node::Cell cell : fallen_[r])
+      std::copy_n(was.begin() + store_->cells().Address(cell, r), store_->cells().Width(cell),
+                  state_.begin() + store_->cells().Address(cell, r));
+  }
   const double t = networked_->now();
   if (round > 1) {
     std::vector<std::string> chosen(bodies_.size());
@@ -78,18 +85,47 @@ void Run::Committed(uint64_t round, const Node& node) {
   After(t);
 }
 
-void Run::Acts(size_t robot, Heap& heap, const Node& node) {
+void Run::Acts(size_t robot, Heap& heap, const Node& node, const std::vector<koord::node::Cell>& commands) {
   const double t = networked_->now();
   for (const Port& port : ports_) {
     if (port.role != PortRole::kTarget && port.role != PortRole::kPath) continue;
-    const bool written = std::ranges::any_of(node.applied().written, [&](const koord::node::Cell& cell) {
-      return cell.variable == port.variable;
-    });
-    // Who got the store from another robot does what it says; who has applied a round, what it wrote.
-    if (written || node.applied().events.empty())
-      Follow(port, robot, heap, node.state().data() + At(port, robot), t);
+    const bool driven = std::ranges::any_of(
+        commands, [&](const koord::node::Cell& cell) { return cell.variable == port.variable; });
+    if (driven) Follow(port, robot, heap, node.state().data() + At(port, robot), t);
   }
+  if (const auto fallen = std::exchange(fallen_[robot], {}); !fallen.empty())
+    Sets(robot, node, node.real(), fallen);
   for (const std::string& text : node.applied().said) Say(t, robot, text);
+}
+
+void Run::FallsBack(size_t robot, const Node& node, const std::vector<koord::node::Cell>& covered) {
+  if (covered.empty()) return;
+  fallen_[robot] = covered;
+  Sets(robot, node, node.real(), covered);
+  for (const Port& port : ports_) {
+    if (model_.FallsBack(port.variable) && (port.role == PortRole::kTarget || port.role == PortRole::kPath))
+      Follow(port, robot, team_->heap(), state_.data() + At(port, robot), networked_->now());
+  }
+}
+
+// Actuators of one robot change in the middle of a round: for this robot, controllers begin anew with what they promise.
+void Run::Sets(size_t robot, const Node& node, std::span<const Word> values,
+               const std::vector<koord::node::Cell>& actuators) {
+  Sense();
+  for (const koord::node::Cell cell : actuators) {
+    runtime::codec::Bytes bytes;  // lists are handles of the robot's own heap
+    runtime::codec::Writer writer(bytes);
+    const uint32_t at = node.cells().Address(cell, robot);
+    node.cells().EncodeValueOf(cell, values.subspan(at, node.cells().Width(cell)), writer);
+    runtime::codec::Reader reader(bytes);
+    std::vector<Word> words;
+    store_->cells().DecodeValueOf(cell, reader, words);
+    std::ranges::copy(words, state_.begin() + at);
+  }
+  if (settled_at_ < 0) return;
+  const uint32_t block = team_->layout().block(robot);
+  std::copy_n(state_.begin() + block, team_->layout().block_words(), settled_.begin() + block);
+  monitor_->Settled(networked_->now(), state_);
 }
 
 void Run::Happens(int robot, const std::string& what) {

@@ -79,7 +79,12 @@ class Run : Stage {
   void Read(size_t robot, size_t variable, Heap& heap, std::span<Word> words) override;
   void Contributed(size_t robot) override;
   void Committed(uint64_t round, const koord::node::Node& node) override;
-  void Acts(size_t robot, Heap& heap, const koord::node::Node& node) override;
+  void Acts(size_t robot, Heap& heap, const koord::node::Node& node,
+            const std::vector<koord::node::Cell>& commands) override;
+  void FallsBack(size_t robot, const koord::node::Node& node,
+                 const std::vector<koord::node::Cell>& covered) override;
+  void Sets(size_t robot, const koord::node::Node& node, std::span<const Word> values,
+            const std::vector<koord::node::Cell>& actuators);
   void Happens(int robot, const std::string& what) override;
   void Fails(size_t robot, const koord::node::Failure& failure) override;
 
@@ -115,8 +120,9 @@ class Run : Stage {
   std::unique_ptr<Monitor> monitor_;
   std::set<std::pair<int, int>> touching_;
   std::unique_ptr<Networked> networked_;
-  std::unique_ptr<koord::node::Node> store_;  // the last that is final, for the monitor
-  double settled_at_ = -1;                    // seconds; before the first round nothing is
+  std::unique_ptr<koord::node::Node> store_;            // the last that is final, for the monitor
+  std::vector<std::vector<koord::node::Cell>> fallen_;  // by robot: actuators that are not as the store says
+  double settled_at_ = -1;                              // seconds; before the first round nothing is
   std::mt19937_64 random_;
   std::vector<Word> state_;
   std::vector<Word> settled_;

@@ -225,6 +225,23 @@ TEST(NetworkedSimulation, ARobotThatIsGoneIsGivenUpOrStopsAll) {
   EXPECT_GE(evicted.report.network->epochs, 3U);  // with all, without robot 2, with all again
 }
 
+// Who hears nobody goes on to where it was sent; with a fallback, to where that says.
+TEST(NetworkedSimulation, FallbacksReachTheBodies) {
+  const std::string program =
+      "using Motion:\n    sensors:\n        pos psn\n    actuators:\n        pos target\n"
+      "Go:\n    eff:\n        Motion.target = pos(100, 0, 0)\n"
+      "invariant behind: Motion.psn.x <= 8\n";
+  NetworkFaults network;
+  network.faults = {{cores::FaultKind::kAlone, 1'000'000'000, 20'000'000'000, 0, 0, 0}};
+  Fleet fleet = Masses(2, 20);
+  fleet.rounds.on_loss = runtime::rounds::OnLoss::kHalt;
+  const Outcome holds = Over(program, fleet, network);
+  EXPECT_FALSE(holds.report.violations.empty());
+  const Outcome stops = Over(program + "fallback Motion:\n    target = psn\n", fleet, network);
+  EXPECT_TRUE(stops.report.violations.empty());
+  EXPECT_EQ(stops.report.network->fallbacks, 2U);
+}
+
 TEST(NetworkedSimulation, ManyRobotsAgreeOnABadRadio) {
   NetworkFaults network;
   network.conditions.loss = 0.3;

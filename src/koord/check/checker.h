@@ -88,6 +88,12 @@ class Checker {
   void LoopIn(const Stmt& stmt);
   void LoopRange(const Stmt& stmt);
 
+  // fallbacks.cc
+  void CheckFallback(const FallbackDef& def);
+  void RestrictFallback(const FallbackDef& def, const std::vector<Stmt>& body);
+  void RestrictFallback(const FallbackDef& def, ExprId e);
+  std::set<size_t> SetOnEveryPath(const std::vector<Stmt>& body) const;
+
   // specifications.cc
   void Specifications();
   void Assume(const AssumeDef& def);
@@ -121,6 +127,7 @@ class Checker {
   std::map<int, std::set<size_t>> calls_;  // function (-1: none) -> functions that its body calls
   Place place_ = Place::kSpec;
   int function_ = -1;
+  std::string fallback_;  // the module whose fallback is being checked
   int loops_ = 0;
   int atomic_ = 0;
   bool old_allowed_ = false;

@@ -55,6 +55,7 @@ Model Checker::Run() {
     Body(event->body);
   }
   may_choose_ = false;
+  for (const FallbackDef* fallback : model_.fallbacks) CheckFallback(*fallback);
   Specifications();
   CheckRecursion();
   CheckSignatures();
@@ -69,7 +70,7 @@ Model Checker::Run() {
 
 void Checker::CheckOrder() {
   constexpr const char* kNames[] = {
-      "the name of the program", "definitions", "modules", "variables", "`init`", "events"};
+      "the name of the program", "definitions", "modules", "variables", "`init`", "events", "fallbacks"};
   struct Rank {
     int operator()(const AgentHeader&) const { return 0; }
     int operator()(const FunctionDef&) const { return 1; }
@@ -79,6 +80,7 @@ void Checker::CheckOrder() {
     int operator()(const Section&) const { return 3; }
     int operator()(const InitDef&) const { return 4; }
     int operator()(const EventDef&) const { return 5; }
+    int operator()(const FallbackDef&) const { return 6; }
     int operator()(const ParamDef&) const { return -1; }
     int operator()(const AssumeDef&) const { return -1; }
     int operator()(const SummaryDef&) const { return -1; }
@@ -98,7 +100,7 @@ void Checker::CheckOrder() {
           .Report(Kind::kKoordSectionOrder, program_.item_spans[i],
                   fmt::format("{} after {}", kNames[rank], kNames[highest]))
           .At(highest_span, "this comes last by convention")
-          .Help("the usual order: definitions, modules, variables, `init`, events, specification");
+          .Help("the usual order: definitions, modules, variables, `init`, events, fallbacks, specification");
       return;
     }
     if (rank > highest) highest_span = program_.item_spans[i];
@@ -172,6 +174,9 @@ void Checker::DeclareAll() {
     if (const auto* event = std::get_if<EventDef>(&item)) {
       // Events have a name space of their own: the original programs call an event and a variable alike.
       if (Claim("event " + event->name, event->span)) model_.events.push_back(event);
+    }
+    if (const auto* def = std::get_if<FallbackDef>(&item)) {
+      if (Claim(def->code.name, def->span)) model_.fallbacks.push_back(def);
     }
     if (const auto* def = std::get_if<AssumeDef>(&item)) model_.assumptions.push_back(def);
     if (const auto* def = std::get_if<SummaryDef>(&item)) model_.summaries.push_back(def);

@@ -119,6 +119,7 @@ struct Model {
   std::map<std::string, ExprId> lengths;
   std::vector<const EventDef*> events;
   std::vector<const InitDef*> inits;
+  std::vector<const FallbackDef*> fallbacks;  ///< at most one for each module
   std::vector<const AssumeDef*> assumptions;
   std::vector<const SummaryDef*> summaries;
   std::vector<const InvariantDef*> invariants;
@@ -136,6 +137,9 @@ struct Model {
   std::map<ExprId, Domains> domains;
   /// Holds, by function definition, loop statement or summary, the bindings of its variables.
   std::map<const void*, std::vector<uint32_t>> bound_by;
+
+  /// Reports whether an actuator belongs to a module with a fallback.
+  bool FallsBack(size_t variable) const;
 
   TypeId TypeOf(ExprId e) const { return types.Resolve(type_of[e.index()]); }
   Ref RefOf(ExprId e) const { return ref_of[e.index()]; }

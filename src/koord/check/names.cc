@@ -47,6 +47,8 @@ TypeId Checker::Name(ExprId id, const lang::Expr& e) {
     return model_.types.integer();
   }
   // A bare port name means the only port with that name.
+  if (const int port = fallback_.empty() ? -1 : FindVariable(fallback_ + "." + e.text); port >= 0)
+    return ReadVariable(id, static_cast<size_t>(port), RefKind::kVariable);
   std::vector<size_t> ports;
   for (size_t i = 0; i < model_.variables.size(); ++i) {
     const Variable& v = model_.variables[i];

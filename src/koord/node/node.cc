@@ -21,7 +21,8 @@ Node::Node(semantics::Team& team, uint32_t robot, Sensors* sensors, uint64_t see
       seed_(seed),
       cells_(team),
       transition_(team),
-      state_(team.blank()) {
+      state_(team.blank()),
+      commands_(team, cells_, robot) {
   team_.machine().KeepSaid(true);
 }
 
@@ -31,6 +32,28 @@ void Node::Reset(std::span<const Word> state, uint64_t seed) {
   offered_.clear();
   applied_ = {};
   failed_.reset();
+  commands_.Reset(state);
+}
+
+const std::vector<Cell>& Node::FallBack(uint64_t round) {
+  if (commands_.covered().empty()) return commands_.covered();
+  std::vector<Word> seen = state_;
+  for (const Cell cell : commands_.covered()) {
+    const uint32_t at = cells_.Address(cell, robot_);
+    std::copy_n(real().begin() + at, cells_.Width(cell), seen.begin() + at);
+  }
+  for (const Cell cell : cells_.sensors()) {
+    if (sensors_ != nullptr)
+      sensors_->Read(robot_, round, cell,
+                     std::span(seen).subspan(cells_.Address(cell, robot_), cells_.Width(cell)));
+  }
+  semantics::Machine& machine = team_.machine();
+  machine.SetMemory(seen.data());
+  for (const semantics::EventCode& code : team_.fallbacks()) {
+    if (!machine.Run(code.body, robot_, false)) machine.Undo();
+  }
+  commands_.FallBack(std::move(seen));
+  return commands_.covered();
 }
 
 void Node::EncodeEffect(const Effect& effect, Bytes& out) const {
@@ -71,11 +94,17 @@ void Node::Contribute(uint64_t round, Bytes& out) {
   std::vector<Word> seen = state_;
   Bytes inputs;
   Writer writer(inputs);
-  writer.Number(cells_.sensors().size());
+  const std::vector<Cell> apart = commands_.Tell(state_);
+  writer.Number(cells_.sensors().size() + apart.size());
   for (const Cell cell : cells_.sensors()) {
     const std::span<Word> words(seen.data() + cells_.Address(cell, robot_), cells_.Width(cell));
     if (sensors_ != nullptr) sensors_->Read(robot_, round, cell, words);
     cells_.Encode(cell, words, writer);
+  }
+  for (const Cell cell : apart) {
+    const uint32_t at = cells_.Address(cell, robot_);
+    std::copy_n(real().begin() + at, cells_.Width(cell), seen.begin() + at);
+    cells_.Encode(cell, std::span(seen).subspan(at, cells_.Width(cell)), writer);
   }
   std::swap(seen, state_);
   if (round == 0)
@@ -118,7 +147,9 @@ bool Node::Reads(View bytes, uint32_t robot, bool inputs, std::vector<Word>* sta
   for (size_t i = 0; i < count && reader.ok(); ++i) {
     words.clear();
     const Cell cell = cells_.Decode(reader, words);
-    if (!reader.ok() || (cells_.Kind(cell) == VariableKind::kSensor) != inputs) return false;
+    if (!reader.ok()) return false;
+    const bool sensor = cells_.Kind(cell) == VariableKind::kSensor;
+    if (inputs ? !sensor && !commands_.IsCovered(cell) : sensor) return false;
     if (state != nullptr) std::ranges::copy(words, state->begin() + cells_.Address(cell, robot));
     if (cells != nullptr) cells->push_back(cell);
   }
@@ -147,8 +178,9 @@ void Node::Apply(uint64_t, std::span<const runtime::rounds::Turn> turns) {
     };
     if (const auto it = std::ranges::find_if(offered_, same); it != offered_.end()) applied_.said = it->said;
   }
+  commands_.Apply(applied_.written);
   if (team_.heap().words_in_use() < collect_at_) return;
-  const std::span<const Word> states[] = {state_};
+  const std::span<const Word> states[] = {state_, real()};
   team_.Collect(states);
   collect_at_ = std::max<size_t>(1'000'000, 2 * team_.heap().words_in_use());
 }
@@ -181,6 +213,7 @@ bool Node::Load(View bytes) {
   if (!reader.Complete()) return false;
   state_ = std::move(state);
   applied_ = {};
+  commands_.Load();
   return true;
 }
 

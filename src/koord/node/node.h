@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "koord/node/cells.h"
+#include "koord/node/commands.h"
 #include "koord/semantics/program_transition.h"
 #include "runtime/rounds/program.h"
 
@@ -40,6 +41,9 @@ using Choose =
     std::function<size_t(uint64_t round, size_t robot, std::span<const semantics::Effect> effects)>;
 
 /// Runs one robot of a program. Round 0 is `init`. Events that cannot be completed are skipped.
+///
+/// A robot that falls back sets the actuators of modules with a `fallback` itself. What an event that it offered before
+/// writes to them is lost; the store of the team has what it set from the next round on that it takes part in (`Commands`).
 class Node : public runtime::rounds::Program {
  public:
   /// @param team  compiled for all robots; this node alone uses it.
@@ -59,6 +63,14 @@ class Node : public runtime::rounds::Program {
   void Apply(uint64_t round, std::span<const runtime::rounds::Turn> turns) override;
   void Save(runtime::codec::Bytes& out) const override;
   bool Load(runtime::codec::View bytes) override;
+
+  /// Runs the fallbacks of the program on what the sensors read now. Returns the actuators that they belong to, with their
+  /// values in `real`; those whose fallback has no value hold.
+  const std::vector<Cell>& FallBack(uint64_t round);
+  /// Says that the robot acts on the store. Returns the actuators that get what it says.
+  std::vector<Cell> Act() { return commands_.Act(state_); }
+  /// Returns the state of the team as this robot sees it: its sensors when it fell back, and its actuators since.
+  const std::vector<Word>& real() const { return commands_.real(); }
 
   const std::vector<Word>& state() const { return state_; }
   const Applied& applied() const { return applied_; }
@@ -88,6 +100,7 @@ class Node : public runtime::rounds::Program {
   std::vector<Offered> offered_;  // by this robot, in this round
   Applied applied_;
   std::optional<Failure> failed_;
+  Commands commands_;
   size_t collect_at_ = 1'000'000;  // words of the heap
 };
 

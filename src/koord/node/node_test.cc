@@ -216,5 +216,150 @@ TEST(Node, SaysWhyAnEventIsLeftOut) {
   EXPECT_TRUE(runtime::rounds::Decode(View(payload))->alternatives.empty());
 }
 
+constexpr const char* kFalling = R"(
+using Motion:
+    sensors:
+        float x
+    actuators:
+        float v
+using Lamp:
+    actuators:
+        int color
+local:
+    int n = 0
+Go:
+    eff:
+        n += 1
+        Motion.v = 10 + n
+        Lamp.color = n
+fallback Motion:
+    v = x / 2
+)";
+
+// A robot that agrees with itself.
+class FallbackTest : public testing::Test {
+ protected:
+  Bytes Contribute(uint64_t round) {
+    Bytes payload;
+    node_.Contribute(round, payload);
+    EXPECT_TRUE(runtime::rounds::Decode(View(payload)));
+    return payload;
+  }
+  void Apply(uint64_t round, const Bytes& payload) {
+    const std::vector<uint32_t> robots{0};
+    const std::vector<Contribution> contributions{*runtime::rounds::Decode(View(payload))};
+    ASSERT_TRUE(node_.Accepts(0, contributions[0].inputs, contributions[0].alternatives));
+    node_.Apply(round, runtime::rounds::Merge(round, robots, contributions));
+  }
+  size_t Variable(const std::string& name) const {
+    for (size_t v = 0; v < team_->model().variables.size(); ++v) {
+      if (team_->model().variables[v].name == name) return v;
+    }
+    return 0;
+  }
+  std::string Show(const std::string& name, const std::vector<Word>& state) {
+    return team_->ShowVariable(state, Variable(name), 0);
+  }
+  // The names of the actuators that get something new.
+  std::string Act() {
+    std::string names;
+    for (const Cell cell : node_.Act())
+      names += (names.empty() ? "" : " ") + team_->model().variables[cell.variable].name;
+    return names;
+  }
+
+  Compiled program_{kFalling};
+  std::unique_ptr<semantics::Team> team_ = program_.Team(1);
+  Steady sensors_;
+  Node node_{*team_, 0, &sensors_, 1};
+};
+
+TEST_F(FallbackTest, TheTeamLearnsWhatAFallbackSet) {
+  Apply(0, Contribute(0));
+  EXPECT_EQ(Act(), "Motion.v Lamp.color");
+  Apply(1, Contribute(1));
+  EXPECT_EQ(Show("Motion.v", node_.state()), "11");
+  EXPECT_EQ(Act(), "Motion.v Lamp.color");
+  EXPECT_EQ(node_.FallBack(1).size(), 1U);
+  EXPECT_EQ(Show("Motion.v", node_.real()), "0.25");
+  EXPECT_EQ(Show("Motion.v", node_.state()), "11");  // what the team knows
+  node_.SetChoose(
+      [](uint64_t, size_t, std::span<const semantics::Effect> effects) { return effects.size(); });
+  Apply(2, Contribute(2));
+  EXPECT_EQ(Show("Motion.v", node_.state()), "0.25");
+  EXPECT_EQ(Act(), "");
+  node_.SetChoose(nullptr);
+  Apply(3, Contribute(3));
+  EXPECT_EQ(Show("Motion.v", node_.state()), "12");
+  EXPECT_EQ(Act(), "Motion.v Lamp.color");
+  EXPECT_EQ(Act(), "");
+}
+
+TEST_F(FallbackTest, WhatWasSaidBeforeReachesNoActuatorWithAFallback) {
+  Apply(0, Contribute(0));
+  Act();
+  const Bytes said = Contribute(1);
+  node_.FallBack(1);
+  Apply(1, said);
+  EXPECT_EQ(Show("n", node_.state()), "1");
+  EXPECT_EQ(Show("Motion.v", node_.state()), "11");
+  EXPECT_EQ(Act(), "Lamp.color");
+  // What is true is told with the next frame; then events count again.
+  Apply(2, Contribute(2));
+  EXPECT_EQ(Show("Motion.v", node_.state()), "12");
+  EXPECT_EQ(Act(), "Motion.v Lamp.color");
+}
+
+TEST_F(FallbackTest, ARoundOnWhichNobodyActedIsToldAndLost) {
+  Apply(0, Contribute(0));
+  Act();
+  node_.FallBack(0);
+  Apply(1, Contribute(1));  // final too late to act
+  EXPECT_EQ(Show("Motion.v", node_.state()), "11");
+  node_.SetChoose(
+      [](uint64_t, size_t, std::span<const semantics::Effect> effects) { return effects.size(); });
+  Apply(2, Contribute(2));
+  EXPECT_EQ(Show("Motion.v", node_.state()), "0.25");
+  EXPECT_EQ(Act(), "Lamp.color");  // without a fallback it comes late
+}
+
+TEST_F(FallbackTest, AnEventThatComesWithTheNewsOverwritesIt) {
+  Apply(0, Contribute(0));
+  Act();
+  node_.FallBack(0);
+  Apply(1, Contribute(1));
+  EXPECT_EQ(Show("Motion.v", node_.state()), "11");
+  EXPECT_EQ(Act(), "Motion.v Lamp.color");
+}
+
+TEST_F(FallbackTest, AStoreOfOthersDoesNotUndoIt) {
+  Apply(0, Contribute(0));
+  Act();
+  Apply(1, Contribute(1));
+  Act();
+  Bytes store;
+  node_.Save(store);
+  node_.FallBack(1);
+  ASSERT_TRUE(node_.Load(store));
+  EXPECT_EQ(Act(), "Lamp.color");
+  node_.Reset(team_->blank(), 1);  // who has not begun does what the team says
+  ASSERT_TRUE(node_.Load(store));
+  EXPECT_EQ(Act(), "Motion.v Lamp.color");
+}
+
+TEST_F(FallbackTest, FramesMayTellOfNoOtherActuator) {
+  const auto accepts = [&](const char* name) {
+    Bytes cells;
+    Writer writer(cells);
+    writer.Number(1);
+    const Word zero = 0;
+    node_.cells().Encode({static_cast<uint32_t>(Variable(name)), 0}, std::span(&zero, 1), writer);
+    return node_.Accepts(0, cells, {});
+  };
+  EXPECT_TRUE(accepts("Motion.v"));
+  EXPECT_FALSE(accepts("Lamp.color"));
+  EXPECT_FALSE(accepts("n"));
+}
+
 }  // namespace
 }  // namespace rondo::koord::node

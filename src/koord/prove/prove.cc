@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "expr/smtlib/smtlib.h"
 #include "koord/check/spec_labels.h"
+#include "koord/prove/cut_off.h"
 #include "koord/prove/obligations/task.h"
 #include "koord/prove/report.h"
 #include "verdict/verdict.h"
@@ -41,7 +42,7 @@ class Prover {
     Solve(Undecided(), Effort::kMore);
     tasks_ = SplitRounds(std::move(tasks_), problems);
     Solve(Undecided(), Effort::kMore);
-    FindWitnesses();
+    FindWitnesses(Undecided());
     // Of what is neither proved nor refuted by now, one more attempt, with all the instances that there are.
     std::vector<Task*> rest;
     for (Task* task : Undecided()) {
@@ -51,6 +52,7 @@ class Prover {
     }
     Solve(rest, Effort::kMost);
     SpellOut(rest);
+    if (!model_.fallbacks.empty()) CutOff(problems);
     report_.interrupted = options_.stop.cancelled();
     MakeRows(problems);
     Reporter reporter(model_, options_, problems, diagnostics_, report_, witnesses_);
@@ -162,11 +164,22 @@ class Prover {
     }
   }
 
+  void CutOff(Problems& problems) {
+    cut_off_ =
+        ProveCutOff(problems, [this](const std::vector<Task*>& todo, Effort effort) { Solve(todo, effort); });
+    report_.obligations += cut_off_.size();
+    std::vector<Task*> undecided;
+    for (Task& task : cut_off_) {
+      if (!task.Proved() && !witnesses_.contains(task.subject)) undecided.push_back(&task);
+    }
+    if (!options_.stop.cancelled()) FindWitnesses(undecided);
+  }
+
   // For each invariant, of the first obligation that is not proved.
-  void FindWitnesses() {
+  void FindWitnesses(const std::vector<Task*>& undecided) {
     std::vector<Task*> first;
     std::set<size_t> seen;
-    for (Task* task : Undecided()) {
+    for (Task* task : undecided) {
       if (task->kind != TaskKind::kDefined && seen.insert(task->subject).second) first.push_back(task);
     }
     std::mutex mutex;
@@ -177,8 +190,11 @@ class Prover {
         options_.progress(i, first.size(), "looking for a counterexample of " + task.name);
       }
       const solve::Budget budget{std::min(options_.timeout, std::chrono::milliseconds(2000)), false};
-      auto witness = FindWitness(model_, task.subject, task.kind == TaskKind::kInitially, options_.robots,
-                                 *options_.solver, budget, options_.stop);
+      const WitnessOf of = task.kind == TaskKind::kInitially ? WitnessOf::kInitial
+                           : task.kind == TaskKind::kCutOff  ? WitnessOf::kCutOff
+                                                             : WitnessOf::kRound;
+      auto witness =
+          FindWitness(model_, task.subject, of, options_.robots, *options_.solver, budget, options_.stop);
       const std::scoped_lock lock(mutex);
       if (witness) witnesses_.emplace(task.subject, std::move(*witness));
     });
@@ -264,6 +280,8 @@ class Prover {
         report_.rows[task.subject].cells.back().seconds /= static_cast<double>(actions.size());
       }
     }
+    for (const Task& task : cut_off_)
+      report_.rows[task.subject].cells.push_back(MakeCell(task, kCutOffColumn, std::nullopt));
     if (!defined.cells.empty()) report_.rows.push_back(std::move(defined));
   }
 
@@ -275,6 +293,8 @@ class Prover {
       case TaskKind::kRound:
       case TaskKind::kStep:
       case TaskKind::kFollows:
+      case TaskKind::kCutOff:
+      case TaskKind::kCutOffStep:
       case TaskKind::kDefined:
       case TaskKind::kSomeCondition:
         return;
@@ -344,6 +364,10 @@ class Prover {
                                     [](const Row& r) { return r.verdict == verdict::Verdict::kProved; });
     if (proved && UsesFloatArithmetic(model_))
       report_.basis.assumed.push_back("floats are exact (on robots, doubles round)");
+    if (proved) {
+      for (std::string& text : AssumedOfCutOff(model_, cut_off_))
+        report_.basis.assumed.push_back(std::move(text));
+    }
     report_.unconstrained = problems.theory().External(false);
     std::vector<std::string> functions = report_.unconstrained;
     for (std::string& f : problems.theory().External(true)) functions.push_back(std::move(f));
@@ -356,6 +380,7 @@ class Prover {
   const ProveOptions& options_;
   diag::Diagnostics& diagnostics_;
   std::vector<Task> tasks_;
+  std::vector<Task> cut_off_;            // by invariant; empty if the program has no fallback
   std::map<size_t, Witness> witnesses_;  // by invariant
   std::vector<size_t> not_now_;
   std::vector<std::pair<size_t, std::vector<std::string>>> never_;

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "koord/check/spec_labels.h"
-#include "koord/prove/witness_replay.h"
 #include "verdict/verdict.h"
 
 namespace rondo::koord {
@@ -130,7 +129,10 @@ void Reporter::FailedInvariant(size_t i) {
   const auto open = [](const Cell& c) { return c.verdict != verdict::Verdict::kProved; };
   auto failed = row.cells.end();
   if (confirmed) {
-    const auto breaks = [&](const Cell& c) { return open(c) && c.action == it->second.action; };
+    const auto breaks = [&](const Cell& c) {
+      return open(c) && (it->second.state.of == WitnessOf::kCutOff ? c.column == kCutOffColumn
+                                                                   : c.action == it->second.action);
+    };
     failed = std::find_if(row.cells.begin(), row.cells.end(), breaks);
     // The round may break the invariant by a later action than its first, whose own case is proved.
     if (failed == row.cells.end()) failed = std::find_if(row.cells.begin(), row.cells.end(), open);
@@ -169,6 +171,7 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
   const Span required = model_.program->exprs[def.body].span;
   const std::string size = fmt::format("N_sys = {}", witness.robots);
   const std::optional<size_t> action = witness.action;
+  if (witness.state.of == WitnessOf::kCutOff) return ToldCutOff(row, def, witness, replay);
   if (!action) {
     row.verdict = verdict::Verdict::kRefuted;
     diagnostics_
@@ -206,6 +209,27 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
   } else if (!witness.reachable) {
     report.Help("add an invariant that excludes the state at the start of this round");
   }
+}
+
+void Reporter::ToldCutOff(Row& row, const InvariantDef& def, const Witness& witness,
+                          const WitnessReplay& replay) {
+  row.verdict = witness.reachable ? verdict::Verdict::kRefuted : verdict::Verdict::kNotInductive;
+  auto& report =
+      diagnostics_
+          .Report(witness.reachable ? Kind::kKoordRefuted : Kind::kKoordNotInductive,
+                  model_.program->exprs[def.body].span,
+                  fmt::format("a robot that is cut off {} `{}`",
+                              witness.reachable ? "violates" : "does not preserve", row.name))
+          .Under("required at every moment")
+          .Note(fmt::format("one round that breaks it, from {} (N_sys = {}):\n{}",
+                            witness.reachable ? "an initial state" : "a state that satisfies every invariant",
+                            witness.robots, witness.table));
+  for (const FallbackDef* fallback : model_.fallbacks) report.At(fallback->span, "what it does then");
+  report.Note(replay.outcome == ReplayOutcome::kReplayed ? "replayed: the program makes this round"
+                                                         : "not replayed: " + replay.why);
+  report.Note(
+      "who is cut off has said what it does, and its actuators may never get it: they hold, or get what the fallback says");
+  report.Help("state the invariant of what robots do after all, or let the fallback keep it");
 }
 
 void Reporter::FailedDefinedness(Cell& cell, size_t place) {

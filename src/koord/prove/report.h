@@ -3,6 +3,7 @@
 #include "koord/prove/obligations/problem.h"
 #include "koord/prove/prove.h"
 #include "koord/prove/witness.h"
+#include "koord/prove/witness_replay.h"
 
 /// Says what became of the proof of a Koord program, in words that lead to a repair.
 namespace rondo::koord {
@@ -39,6 +40,7 @@ class Reporter {
  private:
   void FailedInvariant(size_t i);
   void Told(Row& row, const InvariantDef& def, const Witness& witness);
+  void ToldCutOff(Row& row, const InvariantDef& def, const Witness& witness, const WitnessReplay& replay);
   void FailedDefinedness(Cell& cell, size_t place);
   void Undecided(Row& row, const Cell& cell, diag::Span span, const Witness* candidate);
   diag::Span SpanOf(const std::string& assumption) const;

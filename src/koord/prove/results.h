@@ -13,9 +13,12 @@
 /// Holds what the prover of Koord programs found, as values that reports, replays and files read.
 namespace rondo::koord {
 
+/// Names the obligation about robots that are cut off.
+inline constexpr const char* kCutOffColumn = "cut off";
+
 /// Holds one obligation and what became of it.
 struct Cell {
-  std::string column;            ///< `initially`, an event, `skip`, `init`, or a part of the specification
+  std::string column;  ///< `initially`, an event, `skip`, `init`, `cut off`, or a part of the specification
   std::optional<size_t> action;  ///< the first action, as `Problems` counts; none: initially
   verdict::Verdict verdict = verdict::Verdict::kUnknown;
   std::string reason;             ///< why it is unknown, if it is
@@ -24,17 +27,27 @@ struct Cell {
   bool timed_out = false;  ///< it is unknown for want of time
 };
 
+/// Names what a counterexample shows: an initial state, a round, or a round in which robots are cut off.
+enum class WitnessOf : uint8_t { kInitial, kRound, kCutOff };
+
 /// Holds a counterexample as values: a state and, unless it is an initial one, a round from it.
 struct WitnessState {
   int64_t robots = 0;
-  bool initial = false;
+  WitnessOf of = WitnessOf::kRound;
   bool moved = false;  ///< the environment moved the sensors
   struct Value {
     size_t variable;
     int64_t robot;  ///< -1: shared, or a parameter
     expr::Value start;
     std::optional<expr::Value> end;
+    std::optional<expr::Value> then;  ///< of kCutOff: when the actuators of this robot change
   };
+  /// Tells what becomes of the actuators of a robot in a round in which robots are cut off.
+  struct Actuators {
+    int64_t robot;
+    bool wait, change, fall_back;
+  };
+  std::vector<Actuators> actuators;
   std::vector<Value> values;
   std::vector<int64_t> stopped;                     ///< robots that had stopped at the start
   std::vector<std::pair<int64_t, size_t>> actions;  ///< each robot with its action; 0: it skips

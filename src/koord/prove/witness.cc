@@ -31,25 +31,26 @@ void Mentioned(const Model& model, ExprId id, std::vector<bool>& seen) {
 /// Reads a model of a spelled-out problem and tells it as a story.
 class Storyteller {
  public:
-  Storyteller(const Model& model, Problems& problems, expr::Arena& arena, size_t invariant,
+  Storyteller(const Model& model, Round& round, expr::Arena& arena, size_t invariant, WitnessOf of,
               std::vector<TermId> robots)
       : model_(model),
-        problems_(problems),
+        round_(round),
         arena_(arena),
         invariant_(invariant),
+        of_(of),
         robots_(std::move(robots)) {}
 
-  std::vector<TermId> Wanted(bool initial) {
+  std::vector<TermId> Wanted() {
+    const bool initial = of_ == WitnessOf::kInitial;
     ForEachValue(initial, [&](size_t, bool, TermId, TermId term) { wanted_.push_back(term); });
-    Round& round = problems_.round();
     for (const TermId robot : robots_) wanted_.push_back(robot);
     if (!initial) {
-      wanted_.push_back(round.moved());
+      wanted_.push_back(round_.moved());
       for (const TermId robot : robots_) {
-        wanted_.push_back(arena_.Select(round.start().stopped, robot));
-        for (size_t a = 0; a < round.actions().size(); ++a) {
-          wanted_.push_back(round.Acts(robot, a));
-          for (const ReadRecord& read : round.EffectOf(a, robot).reads) {
+        wanted_.push_back(arena_.Select(round_.start().stopped, robot));
+        for (size_t a = 0; a < round_.actions().size(); ++a) {
+          wanted_.push_back(round_.Acts(robot, a));
+          for (const ReadRecord& read : round_.EffectOf(a, robot).reads) {
             for (const TermId t : {read.index, read.value, read.reached}) {
               if (t.valid() && !arena_.IsOpen(t)) wanted_.push_back(t);
             }
@@ -57,15 +58,22 @@ class Storyteller {
         }
       }
     }
+    if (of_ == WitnessOf::kCutOff) {
+      for (const TermId robot : robots_) {
+        for (const TermId t : {round_.Waits(robot), round_.Changes(robot), round_.FallsBack(robot)})
+          wanted_.push_back(t);
+        ForEachPort([&](size_t v) { wanted_.push_back(arena_.Select(round_.then().value[v], robot)); });
+      }
+    }
     return wanted_;
   }
 
-  WitnessState State(const solve::Sat& sat, bool initial, int64_t robots) {
+  WitnessState State(const solve::Sat& sat, int64_t robots) {
+    const bool initial = of_ == WitnessOf::kInitial;
     WitnessState state;
     state.robots = robots;
-    state.initial = initial;
+    state.of = of_;
     state.moved = !initial && Moved(sat);
-    Round& round = problems_.round();
     const auto number = [&](TermId robot) -> int64_t {
       const std::string text = Show(sat, robot);
       return text.empty() || text.size() > 9 || !std::all_of(text.begin(), text.end(), ::isdigit)
@@ -86,41 +94,52 @@ class Storyteller {
     for (const TermId robot : robots_) {
       const int64_t r = number(robot);
       if (initial || !told.insert(r).second) continue;
-      if (IsTrue(sat, arena_.Select(round.start().stopped, robot))) state.stopped.push_back(r);
-      for (size_t a = 0; a < round.actions().size(); ++a) {
-        if (IsTrue(sat, round.Acts(robot, a))) state.actions.emplace_back(r, a);
+      if (IsTrue(sat, arena_.Select(round_.start().stopped, robot))) state.stopped.push_back(r);
+      for (size_t a = 0; a < round_.actions().size(); ++a) {
+        if (IsTrue(sat, round_.Acts(robot, a))) state.actions.emplace_back(r, a);
       }
+      if (of_ != WitnessOf::kCutOff) continue;
+      state.actuators.push_back({r, IsTrue(sat, round_.Waits(robot)), IsTrue(sat, round_.Changes(robot)),
+                                 IsTrue(sat, round_.FallsBack(robot))});
+      ForEachPort([&](size_t v) {
+        const auto then = sat.values.find(arena_.Select(round_.then().value[v], robot));
+        for (WitnessState::Value& value : state.values) {
+          if (value.variable == v && value.robot == r && then != sat.values.end()) value.then = then->second;
+        }
+      });
     }
     return state;
   }
 
   // The first in program order that some robot takes; 0: all skip.
   size_t FirstAction(const solve::Sat& sat) {
-    Round& round = problems_.round();
-    for (size_t a = 1; a < round.actions().size(); ++a) {
+    for (size_t a = 1; a < round_.actions().size(); ++a) {
       for (const TermId robot : robots_) {
-        if (IsTrue(sat, round.Acts(robot, a))) return a;
+        if (IsTrue(sat, round_.Acts(robot, a))) return a;
       }
     }
     return 0;
   }
 
-  bool Moved(const solve::Sat& sat) const { return IsTrue(sat, problems_.round().moved()); }
+  bool Moved(const solve::Sat& sat) const { return IsTrue(sat, round_.moved()); }
 
-  std::string Tell(const solve::Sat& sat, bool initial) {
+  std::string Tell(const solve::Sat& sat) {
+    const bool initial = of_ == WitnessOf::kInitial;
     TextTable table;
-    Round& round = problems_.round();
     if (!initial) {
       std::vector<std::string> told;
       for (const TermId robot : robots_) {
         const std::string number = Show(sat, robot);
         if (std::find(told.begin(), told.end(), number) != told.end()) continue;
         told.push_back(number);
-        for (size_t a = 0; a < round.actions().size(); ++a) {
-          if (!IsTrue(sat, round.Acts(robot, a))) continue;
-          table.Add({fmt::format("robot {}", number), round.actions()[a], Reads(sat, robot, a),
+        for (size_t a = 0; a < round_.actions().size(); ++a) {
+          if (!IsTrue(sat, round_.Acts(robot, a))) continue;
+          table.Add({fmt::format("robot {}", number), round_.actions()[a], Reads(sat, robot, a),
                      Writes(sat, robot)});
         }
+        if (of_ == WitnessOf::kCutOff &&
+            (IsTrue(sat, round_.Waits(robot)) || IsTrue(sat, round_.Changes(robot))))
+          table.Add({fmt::format("robot {}", number), OfActuators(sat, robot), Actuators(sat, robot), ""});
       }
     }
     State(sat, initial, table);
@@ -157,7 +176,7 @@ class Storyteller {
 
   std::string Reads(const solve::Sat& sat, TermId robot, size_t action) {
     std::vector<std::string> parts;
-    for (const ReadRecord& read : problems_.round().EffectOf(action, robot).reads) {
+    for (const ReadRecord& read : round_.EffectOf(action, robot).reads) {
       if (!IsTrue(sat, read.reached) || arena_.IsOpen(read.value)) continue;
       if (!read.index.valid() &&
           model_.types.Is(model_.variables[read.variable].type, lang::TypeKind::kArray))
@@ -172,18 +191,18 @@ class Storyteller {
 
   std::string Writes(const solve::Sat& sat, TermId robot) {
     std::vector<std::string> parts;
-    Round& round = problems_.round();
-    for (size_t a = 1; a < round.actions().size(); ++a) {
-      if (!IsTrue(sat, round.Acts(robot, a))) continue;
+    for (size_t a = 1; a < round_.actions().size(); ++a) {
+      if (!IsTrue(sat, round_.Acts(robot, a))) continue;
       for (size_t v = 0; v < model_.variables.size(); ++v) {
         const Variable& variable = model_.variables[v];
         if (variable.kind == VariableKind::kParam || variable.kind == VariableKind::kSensor ||
             variable.kind == VariableKind::kAllwrite || variable.function >= 0 ||
+            (of_ == WitnessOf::kCutOff && variable.kind == VariableKind::kActuator) ||
             model_.types.Is(variable.type, lang::TypeKind::kArray)) {
           continue;
         }
-        const std::string before = Show(sat, arena_.Select(round.start().value[v], robot));
-        const std::string after = Show(sat, arena_.Select(round.end().value[v], robot));
+        const std::string before = Show(sat, arena_.Select(round_.start().value[v], robot));
+        const std::string after = Show(sat, arena_.Select(round_.end().value[v], robot));
         if (before == after) continue;
         const std::string index =
             variable.kind == VariableKind::kAllread ? fmt::format("[{}]", Show(sat, robot)) : "";
@@ -191,6 +210,33 @@ class Storyteller {
       }
     }
     return parts.empty() ? "" : fmt::format("wrote {}", fmt::join(parts, ", "));
+  }
+
+  void ForEachPort(const std::function<void(size_t)>& visit) const {
+    for (size_t v = 0; v < model_.variables.size(); ++v) {
+      const Variable& variable = model_.variables[v];
+      const bool port = variable.kind == VariableKind::kSensor || variable.kind == VariableKind::kActuator;
+      if (port && variable.function < 0 && !model_.types.Is(variable.type, lang::TypeKind::kArray)) visit(v);
+    }
+  }
+
+  std::string OfActuators(const solve::Sat& sat, TermId robot) {
+    if (!IsTrue(sat, round_.Changes(robot))) return "is cut off";
+    return IsTrue(sat, round_.FallsBack(robot)) ? "falls back" : "acts late";
+  }
+
+  // What actuators get, and where sensors are when they do.
+  std::string Actuators(const solve::Sat& sat, TermId robot) {
+    std::vector<std::string> parts;
+    ForEachPort([&](size_t v) {
+      const bool sensor = model_.variables[v].kind == VariableKind::kSensor;
+      const bool changes = IsTrue(sat, round_.Changes(robot));
+      if (sensor && !changes) return;
+      const View& at = sensor ? round_.then() : round_.end();
+      parts.push_back(fmt::format("{}{} = {}", sensor ? "at " : "", model_.variables[v].name,
+                                  Show(sat, arena_.Select(at.value[v], robot))));
+    });
+    return fmt::format("{}", fmt::join(parts, ", "));
   }
 
   // Values at the start and at the end of what the invariant mentions or the round changed.
@@ -233,26 +279,26 @@ class Storyteller {
 
   // (variable, at the end?, robot or none, value)
   void ForEachValue(bool initial, const std::function<void(size_t, bool, TermId, TermId)>& visit) {
-    Round& round = problems_.round();
     for (size_t v = 0; v < model_.variables.size(); ++v) {
       const Variable& variable = model_.variables[v];
       if (variable.function >= 0 || model_.types.Is(variable.type, lang::TypeKind::kArray)) continue;
       if (!variable.PerRobot()) {
-        visit(v, false, {}, round.start().value[v]);
-        if (!initial && variable.kind != VariableKind::kParam) visit(v, true, {}, round.end().value[v]);
+        visit(v, false, {}, round_.start().value[v]);
+        if (!initial && variable.kind != VariableKind::kParam) visit(v, true, {}, round_.end().value[v]);
         continue;
       }
       for (const TermId robot : robots_) {
-        visit(v, false, robot, arena_.Select(round.start().value[v], robot));
-        if (!initial) visit(v, true, robot, arena_.Select(round.end().value[v], robot));
+        visit(v, false, robot, arena_.Select(round_.start().value[v], robot));
+        if (!initial) visit(v, true, robot, arena_.Select(round_.end().value[v], robot));
       }
     }
   }
 
   const Model& model_;
-  Problems& problems_;
+  Round& round_;
   expr::Arena& arena_;
   size_t invariant_;
+  WitnessOf of_;
   std::vector<TermId> robots_;
   std::vector<TermId> wanted_;
 };
@@ -336,8 +382,11 @@ bool OthersCanBeCopies(const expr::Arena& arena, const Problem& problem, Problem
   });
 }
 
+// What breaks an invariant with these limits does so without them.
+constexpr CutOffLimits kMostLimits{true, true};
+
 // A team of `n`, every quantifier over robots spelled out; or, for a large team, only those who matter.
-std::optional<Witness> TryTeam(const Model& model, size_t invariant, bool initial, int64_t n, bool expand,
+std::optional<Witness> TryTeam(const Model& model, size_t invariant, WitnessOf of, int64_t n, bool expand,
                                const solve::Solver& solver, const solve::Budget& budget,
                                const base::StopToken& stop) {
   expr::Arena arena;
@@ -345,9 +394,11 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, bool initia
   Problems problems(arena, model, {n, expand}, ignored);
   problems.limits.rounds = 5;
   const auto attempt = [&](const Problem& problem, bool reachable) -> std::optional<Witness> {
-    Storyteller storyteller(model, problems, arena, invariant, problem.participants);
+    Storyteller storyteller(model,
+                            of == WitnessOf::kCutOff ? problems.cut_off(kMostLimits) : problems.round(),
+                            arena, invariant, of, problem.participants);
     const bool complete = problem.complete || (!expand && OthersCanBeCopies(arena, problem, problems));
-    const std::vector<TermId> wanted = storyteller.Wanted(initial);
+    const std::vector<TermId> wanted = storyteller.Wanted();
     std::vector<solve::Assertion> small = Small(arena, wanted);
     std::optional<Candidate> found;
     bool distances = !problems.uses_dist();
@@ -365,19 +416,24 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, bool initia
     }
     if (!found || !distances) found = Confirm(problem, wanted, small, complete, solver, budget, stop);
     if (!found) return std::nullopt;
-    return Witness{initial ? std::nullopt : std::optional(storyteller.FirstAction(found->sat)),
-                   found->confirmed && distances && !problems.vocabulary().uses_texts(),
-                   reachable,
-                   !initial && storyteller.Moved(found->sat),
-                   n,
-                   storyteller.Tell(found->sat, initial),
-                   storyteller.State(found->sat, initial, n)};
+    return Witness{
+        of != WitnessOf::kRound ? std::nullopt : std::optional(storyteller.FirstAction(found->sat)),
+        found->confirmed && distances && !problems.vocabulary().uses_texts(),
+        reachable,
+        of != WitnessOf::kInitial && storyteller.Moved(found->sat),
+        n,
+        storyteller.Tell(found->sat),
+        storyteller.State(found->sat, n)};
   };
-  if (initial) return attempt(problems.Initially(invariant), true);
+  if (of == WitnessOf::kInitial) return attempt(problems.Initially(invariant), true);
   // Any round: which of its cases could not be proved does not matter, where one breaks the invariant.
-  auto witness = attempt(problems.Step(invariant, std::nullopt, false), false);
+  const auto state = [&](bool reachable) {
+    return of == WitnessOf::kCutOff ? problems.CutOff(invariant, std::nullopt, kMostLimits, reachable)
+                                    : problems.Step(invariant, std::nullopt, reachable);
+  };
+  auto witness = attempt(state(false), false);
   if (witness && witness->confirmed && !problems.has_init()) {
-    auto real = attempt(problems.Step(invariant, std::nullopt, true), true);
+    auto real = attempt(state(true), true);
     if (real && real->confirmed) return real;
   }
   return witness;
@@ -385,18 +441,18 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, bool initia
 
 }  // namespace
 
-std::optional<Witness> FindWitness(const Model& model, size_t invariant, bool initial,
+std::optional<Witness> FindWitness(const Model& model, size_t invariant, WitnessOf of,
                                    std::optional<int64_t> robots, const solve::Solver& solver,
                                    const solve::Budget& budget, const base::StopToken& stop) {
   static constexpr int64_t kLargest = 8;
   const base::StopToken limited = stop.WithDeadline(base::StopToken::Clock::now() + budget.time);
   if (robots && *robots > kLargest)
-    return TryTeam(model, invariant, initial, *robots, false, solver, budget, limited);
+    return TryTeam(model, invariant, of, *robots, false, solver, budget, limited);
   std::optional<Witness> best;
   int unconfirmed = 0;
   for (int64_t n = robots.value_or(1); n <= robots.value_or(4) && unconfirmed < 2 && !limited.StopRequested();
        ++n) {
-    auto witness = TryTeam(model, invariant, initial, n, true, solver, budget, limited);
+    auto witness = TryTeam(model, invariant, of, n, true, solver, budget, limited);
     if (!witness) continue;
     if (witness->confirmed) return witness;
     // What could not be confirmed for two sizes will not be for a third: the functions are too much for the

@@ -21,11 +21,11 @@ struct Witness {
   WitnessState state;
 };
 
-/// Looks for a witness that invariant `i` fails in an initial state (`initial`), or in any round from a state
-/// that satisfies every invariant. Tries teams of 1 to 4 robots, or the fixed size if that is at most 8. A
+/// Looks for a witness that invariant `i` fails in an initial state, or in any round from a state that satisfies every
+/// invariant. Tries teams of 1 to 4 robots, or the fixed size if that is at most 8. A
 /// witness is confirmed with every quantifier in place; without a confirmed one, returns a candidate if there
 /// is any. Returns nothing if neither was found within `budget`, which is for all of the search.
-std::optional<Witness> FindWitness(const Model& model, size_t invariant, bool initial,
+std::optional<Witness> FindWitness(const Model& model, size_t invariant, WitnessOf of,
                                    std::optional<int64_t> robots, const solve::Solver& solver,
                                    const solve::Budget& budget, const base::StopToken& stop);
 

@@ -87,7 +87,7 @@ class Replay {
 
  private:
   WitnessReplay Compare() {
-    if (witness_.initial) {
+    if (witness_.of == WitnessOf::kInitial) {
       if (Holds(start_, invariant_)) return Differs("the invariant holds");
       return {ReplayOutcome::kReplayed, ""};
     }
@@ -96,7 +96,7 @@ class Replay {
         return Differs(fmt::format("its start violates `{}`", team_->invariants()[i].name));
     }
     if (Holds(end_, invariant_)) return Differs("the invariant holds at its end");
-    return Round();
+    return witness_.of == WitnessOf::kCutOff ? CutOff() : Round();
   }
 
   static WitnessReplay Differs(std::string why) { return {ReplayOutcome::kDiffers, std::move(why)}; }
@@ -123,7 +123,7 @@ class Replay {
     if (!team_->unchecked().empty())
       return Refuse(fmt::format("`{}` cannot be evaluated", team_->unchecked()[0].name));
     start_.assign(team_->layout().words(), 0);
-    end_ = start_;
+    end_ = then_ = start_;
     std::vector<bool> known(start_.size());
     for (const WitnessState::Value& value : witness_.values) {
       const Variable& variable = model_.variables[value.variable];
@@ -134,12 +134,16 @@ class Replay {
           team_->layout().Address(value.variable, static_cast<size_t>(std::max<int64_t>(0, value.robot)));
       std::vector<Word> words;
       std::vector<Word> after;
+      std::vector<Word> then;
       if (!ToWords(model_.types, variable.type, value.start, words) ||
-          (value.end && !ToWords(model_.types, variable.type, *value.end, after)))
+          (value.end && !ToWords(model_.types, variable.type, *value.end, after)) ||
+          (value.then && !ToWords(model_.types, variable.type, *value.then, then)))
         return Refuse(fmt::format("`{}` has a value that no run can have", variable.name));
       if (!value.end) after = words;
+      if (!value.then) then = after;
       std::copy(words.begin(), words.end(), start_.begin() + at);
       std::copy(after.begin(), after.end(), end_.begin() + at);
+      std::copy(then.begin(), then.end(), then_.begin() + at);
       std::fill_n(known.begin() + at, words.size(), true);
     }
     for (const int64_t r : witness_.stopped) {
@@ -208,12 +212,129 @@ class Replay {
     return {ReplayOutcome::kReplayed, ""};
   }
 
+  // -- robots that are cut off
+
+  // Which words of a state are ports of this kind?
+  std::vector<bool> Ports(VariableKind kind) const {
+    std::vector<bool> ports(start_.size());
+    for (size_t v = 0; v < model_.variables.size(); ++v) {
+      if (model_.variables[v].kind != kind || !team_->layout()[v].exists) continue;
+      for (size_t r = 0; r < team_->robots(); ++r)
+        std::fill_n(ports.begin() + team_->layout().Address(v, r), team_->layout()[v].words(), true);
+    }
+    return ports;
+  }
+
+  // Does some choice of events lead to what the team agrees on, and each robot's actuators go their way from there?
+  WitnessReplay CutOff() {
+    sensors_ = Ports(VariableKind::kSensor);
+    actuators_ = Ports(VariableKind::kActuator);
+    semantics::ProgramTransition transition(*team_);
+    transition.Prepare(start_);
+    std::vector<Word> agreed;
+    std::string why = "no choice of events and last writers leads to its end";
+    transition.Enumerate([&](std::span<const Word> state, bool) {
+      for (size_t i = 0; i < state.size(); ++i) {
+        if (!sensors_[i] && !actuators_[i] && state[i] != end_[i] && !IsMark(i)) return true;
+      }
+      agreed.assign(state.begin(), state.end());
+      why.clear();
+      for (size_t r = 0; r < team_->robots() && why.empty(); ++r) why = Goes(r, agreed);
+      return !why.empty();
+    });
+    return why.empty() ? WitnessReplay{ReplayOutcome::kReplayed, ""} : Differs(why);
+  }
+
+  bool IsMark(size_t at) const {
+    const semantics::Layout& layout = team_->layout();
+    for (size_t r = 0; r < team_->robots(); ++r) {
+      if (at == layout.block(r) + layout.stopped()) return true;
+    }
+    return false;
+  }
+
+  // Why the actuators or sensors of a robot cannot do this; empty if they can.
+  std::string Goes(size_t r, const std::vector<Word>& agreed) {
+    WitnessState::Actuators how{static_cast<int64_t>(r), false, false, false};
+    for (const auto& a : witness_.actuators) {
+      if (a.robot == how.robot) how = a;
+    }
+    std::vector<Word> first = how.wait ? start_ : agreed;  // until they change
+    std::vector<Word> last = how.change ? agreed : first;  // from then on
+    std::vector<Word> fallen = then_;
+    if (how.change && how.fall_back) {
+      last = first;
+      team_->machine().SetMemory(fallen.data());
+      for (const semantics::EventCode& code : team_->fallbacks()) {
+        if (!team_->machine().Run(code.body, r, false)) return "a fallback has no value";
+      }
+      for (const FallbackDef* def : model_.fallbacks) TakeOver(r, *def, fallen, last);
+    }
+    if (!Same(r, actuators_, last, end_)) return "an actuator has another value at the end";
+    if (how.change && !Same(r, actuators_, first, then_))
+      return "an actuator has another value before it changes";
+    if (!witness_.moved)
+      return Same(r, sensors_, start_, end_) ? "" : "sensors differ although the environment did not move";
+    if (!how.change) return Leg(r, With(agreed, r, start_, first), With(end_, r, end_, last), false);
+    const std::string before = Leg(r, With(agreed, r, start_, first), With(agreed, r, then_, first), true);
+    return !before.empty() ? before : Leg(r, With(end_, r, then_, last), With(end_, r, end_, last), true);
+  }
+
+  void TakeOver(size_t r, const FallbackDef& def, const std::vector<Word>& from,
+                std::vector<Word>& to) const {
+    for (size_t v = 0; v < model_.variables.size(); ++v) {
+      if (model_.variables[v].kind != VariableKind::kActuator || model_.variables[v].module != def.module)
+        continue;
+      const uint32_t at = team_->layout().Address(v, r);
+      std::copy_n(from.begin() + at, team_->layout()[v].words(), to.begin() + at);
+    }
+  }
+
+  bool Same(size_t r, const std::vector<bool>& which, const std::vector<Word>& a,
+            const std::vector<Word>& b) const {
+    const uint32_t first = team_->layout().block(r);
+    for (uint32_t at = first; at < first + team_->layout().block_words(); ++at) {
+      if (which[at] && a[at] != b[at]) return false;
+    }
+    return true;
+  }
+
+  // A state with the sensors and the actuators of a robot as they are in others.
+  std::vector<Word> With(std::vector<Word> state, size_t r, const std::vector<Word>& sensors,
+                         const std::vector<Word>& actuators) const {
+    const uint32_t first = team_->layout().block(r);
+    for (uint32_t at = first; at < first + team_->layout().block_words(); ++at) {
+      if (sensors_[at]) state[at] = sensors[at];
+      if (actuators_[at]) state[at] = actuators[at];
+    }
+    return state;
+  }
+
+  // @param may_rest  nothing is promised if the sensors stay.
+  std::string Leg(size_t r, std::vector<Word> from, std::vector<Word> to, bool may_rest) {
+    semantics::Machine& machine = team_->machine();
+    machine.SetMemory(to.data(), from.data());
+    for (const semantics::FormulaCode& fact : team_->port_facts()) {
+      if (!machine.RunFormula(fact.entry, r)) return fmt::format("`{}` is violated", fact.name);
+    }
+    if (may_rest && Same(r, sensors_, from, to)) return "";
+    for (const semantics::PromiseCode& promise : team_->promises()) {
+      machine.SetMemory(from.data());
+      if (promise.when != 0 && !machine.RunFormula(promise.when, r)) continue;
+      machine.SetMemory(to.data(), from.data());
+      if (!machine.RunFormula(promise.always, r)) return fmt::format("`{}` is violated", promise.name);
+    }
+    return "";
+  }
+
   const Model& model_;
   size_t invariant_;
   const WitnessState& witness_;
+  std::vector<bool> sensors_, actuators_;  // by word of a state
   std::unique_ptr<semantics::Team> team_;
   std::vector<Word> start_;
   std::vector<Word> end_;
+  std::vector<Word> then_;  // each robot's part: when its actuators change
   std::string why_;
   bool undefined_ = false;
 };

@@ -161,13 +161,17 @@ bool Team::Compile(const TeamOptions& options, diag::Diagnostics& diagnostics) {
   }
   for (const auto& [s, why] : compiler.unchecked_summaries())
     unchecked_.push_back({SummaryName(*model_.summaries[s]), why.span, why.reason});
-  branches_ = compiler.branches();
+  branches_ = compiler.branches();  // those of fallbacks are no part of a round
+  for (const FallbackDef* def : model_.fallbacks) {
+    fallbacks_.push_back({&def->code, 0, compiler.Statements(def->code.body), false, false});
+    refuse();
+  }
   logged_ = compiler.logged();
   MakeBlank();
   heap_.Pin();
   machine_ = std::make_unique<Machine>(code_, *layout_, heap_);
   machine_->params() = params_;
-  machine_->marks().resize(branches_.size());
+  machine_->marks().resize(compiler.branches().size());
   machine_->SetShow([this](size_t type, std::span<const Word> value) { return ShowLogged(type, value); });
   return diagnostics.errors() == before;
 }

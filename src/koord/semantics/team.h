@@ -81,6 +81,8 @@ class Team {
   size_t robots() const { return layout_->robots(); }
 
   const std::vector<EventCode>& events() const { return events_; }
+  /// Returns the code of the fallbacks, in the order of `Model::fallbacks`: without guards.
+  const std::vector<EventCode>& fallbacks() const { return fallbacks_; }
   const std::vector<uint32_t>& inits() const { return inits_; }
   const std::vector<InitialCode>& declared() const { return declared_; }
   /// Returns the code of values that follow from `assume initially: v == e`, for variables without a declared
@@ -145,6 +147,7 @@ class Team {
   std::vector<Word> params_;
   Lengths lengths_;
   std::vector<EventCode> events_;
+  std::vector<EventCode> fallbacks_;
   std::vector<uint32_t> inits_;
   std::vector<InitialCode> declared_;
   std::vector<InitialCode> derived_;

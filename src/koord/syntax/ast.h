@@ -117,6 +117,13 @@ struct EventDef {
   bool urgent = false;
   std::vector<Stmt> body;
 };
+/// Represents `fallback M: statements`: what the actuators of module M get when a robot may no longer act on what the team
+/// agrees on (docs/runtime.md). `code` is an event without a guard that is called `fallback M`.
+struct FallbackDef {
+  std::string module;
+  diag::Span span;  ///< of the name of the module
+  EventDef code;
+};
 /// Represents the line that names the program.
 struct AgentHeader {
   std::string name;
@@ -193,8 +200,9 @@ struct PlatformDef {
   ExprId period;  ///< the length of a round, in seconds
 };
 
-using Item = std::variant<AgentHeader, FunctionDef, AdtDef, EnumDef, ModuleDef, Section, InitDef, EventDef,
-                          ParamDef, AssumeDef, SummaryDef, InvariantDef, ExploreDef, PlatformDef>;
+using Item =
+    std::variant<AgentHeader, FunctionDef, AdtDef, EnumDef, ModuleDef, Section, InitDef, EventDef,
+                 FallbackDef, ParamDef, AssumeDef, SummaryDef, InvariantDef, ExploreDef, PlatformDef>;
 
 /// Holds one file, or a program with the specification beside it: items in source order.
 struct Program {

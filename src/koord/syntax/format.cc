@@ -151,6 +151,10 @@ class Formatter {
     Body(item.body);
     --depth_;
   }
+  void Print(const FallbackDef& item) {
+    Line(item.span, fmt::format("fallback {}:", item.module));
+    Body(item.code.body);
+  }
   void Print(const ParamDef& item) { Line(item.span, "param " + Text(item.decl)); }
 
   void Print(const AssumeDef& item) {

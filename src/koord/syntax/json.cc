@@ -61,6 +61,11 @@ class Writer {
     j["body"] = Body(i.body);
     return j;
   }
+  json operator()(const FallbackDef& i) const {
+    json j = Named("fallback", i.module, i.span);
+    j["body"] = Body(i.code.body);
+    return j;
+  }
   json operator()(const ParamDef& i) const {
     json j = One(i.decl);
     j["item"] = "param";

@@ -108,6 +108,8 @@ void Parser::ParseItem() {
     if (EndLine("the name of the program")) AddItem(AgentHeader{std::move(name), span}, start);
     return;
   }
+  // An event may be called `fallback`.
+  if (At("fallback") && Peek(1).kind == TokenKind::kName) return ParseFallback();
   if (ParseSpecItem()) return;
   if (const std::string_view instead = AlternativeFor(Peek().text, WordPlace::kItem);
       !instead.empty() && Peek(1).text != ":" && Peek(1).text != "(") {
@@ -245,6 +247,17 @@ void Parser::ParseEvent() {
     if (AtKind(TokenKind::kDedent)) Take();
   }
   AddItem(std::move(event), start);
+}
+
+// fallback M: suite
+void Parser::ParseFallback() {
+  const Span start = Take().span;
+  FallbackDef def;
+  def.span = def.code.span = Peek().span;
+  def.module = ExpectName("the name of a module");
+  def.code.name = "fallback " + def.module;
+  def.code.body = ParseSuite("the head of a fallback");
+  AddItem(std::move(def), start);
 }
 
 // [pre [urgent] [:] expr] eff suite

@@ -34,6 +34,7 @@ class Parser : public lang::ExprParser {
   void ParseSection(SectionKind kind);
   void ParseInit();
   void ParseEvent();
+  void ParseFallback();
   bool ParseEventBody(EventDef& event);
 
   // declaration_parser.cc

@@ -81,6 +81,7 @@ class World : cores::Robots {
     nodes_[r]->Reset(history::StateOf(*teams_[r], start_), s_.seed);
     nodes_[r]->SetSensors(noises_[r].get());
     Log(r, Kind::kStarted);
+    if (cores_.incarnation(r) > 1) FallBack(r);  // what its actuators do after a crash, nobody knows
     return *nodes_[r];
   }
   void Crashed(uint32_t r) override { Log(r, Kind::kCrashed); }
@@ -92,9 +93,16 @@ class World : cores::Robots {
 
   void Do(uint32_t, const rounds::Send&) {}
   void Do(uint32_t r, const rounds::Act& act) {
+    nodes_[r]->Act();
     Log(r, Kind::kActed, act.at).until = cores_.When(r, act.until);
   }
-  void Do(uint32_t r, const rounds::FallBack&) { Log(r, Kind::kFellBack); }
+  void Do(uint32_t r, const rounds::FallBack&) { FallBack(r); }
+  void FallBack(uint32_t r) {
+    const size_t image = out_.record.images.size();
+    const bool sets = !nodes_[r]->FallBack(cores_.now()).empty();
+    if (sets) out_.record.images.push_back(history::ImageOf(*teams_[r], nodes_[r]->real()));
+    Log(r, Kind::kFellBack).what = sets ? image : history::kNothing;
+  }
   void Do(uint32_t r, const rounds::Contributed& c) {
     Log(r, Kind::kContributed, c.at).what = out_.record.texts.size();
     out_.record.texts.push_back(c.payload);

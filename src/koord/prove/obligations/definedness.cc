@@ -11,6 +11,8 @@ namespace rondo::koord {
 using solve::Assertion;
 
 std::vector<DefinednessCheck> Problems::ChecksAt(size_t place, TermId robot) {
+  if (place >= fallback(0))
+    return executor_.Run(model_.fallbacks[place - fallback(0)]->code, round_.start(), robot).checks;
   if (place >= columns()) return ChecksOfPart(static_cast<Part>(place - columns()), robot);
   return EffectAt(place, robot).checks;
 }
@@ -51,6 +53,7 @@ std::vector<DefinednessCheck> Problems::ChecksOfPart(Part part, TermId robot) {
 std::string Problems::NameOf(size_t place) const {
   if (place == 0) return "init";
   if (place < round_.actions().size()) return round_.actions()[place];
+  if (place >= fallback(0)) return model_.fallbacks[place - fallback(0)]->code.name;
   switch (static_cast<Part>(place - round_.actions().size())) {
     case Part::kInvariants:
       return "specification";
@@ -82,7 +85,7 @@ Problem Problems::Undefined(size_t place, TermId undefined, TermId robot) {
   if (place == 0) {
     Append(assertions, theory_.DeclaredValues(init_->start()));
     Append(assertions, theory_.PortFacts(init_->start()));
-  } else if (place < columns() || place == specification(Part::kInvariants)) {
+  } else if (place < columns() || place == specification(Part::kInvariants) || place >= fallback(0)) {
     Append(assertions, Everything(round_.start()));
   } else if (place == specification(Part::kInitial)) {
     Append(assertions, theory_.DeclaredValues(round_.start()));

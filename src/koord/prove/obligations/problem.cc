@@ -149,14 +149,14 @@ Problem Problems::InitiallyFor(TermId refuted, const std::vector<TermId>& others
   return Ground(std::move(assertions), std::move(participants));
 }
 
-// `action` is taken by somebody, and nobody takes an earlier one.
-TermId Problems::First(size_t action, const std::vector<TermId>& participants) {
+// `action` is taken by somebody whose state the goal reads, and nobody of those takes an earlier one.
+TermId Problems::First(Round& round, size_t action) {
   std::vector<TermId> facts;
   std::vector<TermId> somebody;
-  for (const TermId r : participants) {
-    somebody.push_back(round_.Acts(r, action));
-    std::vector<TermId> allowed{round_.Acts(r, 0)};
-    for (size_t a = action; action > 0 && a < columns(); ++a) allowed.push_back(round_.Acts(r, a));
+  for (const TermId r : round.readers()) {
+    somebody.push_back(round.Acts(r, action));
+    std::vector<TermId> allowed{round.Acts(r, 0)};
+    for (size_t a = action; action > 0 && a < columns(); ++a) allowed.push_back(round.Acts(r, a));
     facts.push_back(arena_.Or(allowed));
   }
   if (action > 0) facts.push_back(arena_.Or(somebody));
@@ -164,12 +164,12 @@ TermId Problems::First(size_t action, const std::vector<TermId>& participants) {
 }
 
 // No operation fails in what the participants do: a counterexample is a round that can be completed.
-TermId Problems::Succeeds(const std::vector<TermId>& participants) {
+TermId Problems::Succeeds(Round& round) {
   std::vector<TermId> facts;
-  for (const TermId r : participants) {
+  for (const TermId r : round.participants()) {
     for (size_t a = 1; a < columns(); ++a) {
-      for (const DefinednessCheck& c : round_.EffectOf(a, r).checks) {
-        facts.push_back(arena_.Or({arena_.Not(round_.Acts(r, a)), arena_.Not(c.reached), c.holds}));
+      for (const DefinednessCheck& c : round.EffectOf(a, r).checks) {
+        facts.push_back(arena_.Or({arena_.Not(round.Acts(r, a)), arena_.Not(c.reached), c.holds}));
       }
     }
   }
@@ -199,7 +199,23 @@ Problem Problems::WithWitnesses(TermId refuted,
 Problem Problems::Step(size_t invariant, std::optional<size_t> action, bool reachable) {
   const TermId refuted = Refute(theory_.Invariant(invariant, round_.end()));
   return WithWitnesses(refuted, [&](const std::vector<TermId>& others) {
-    return StepFor(refuted, others, action, reachable);
+    return StepFor(round_, refuted, others, action, reachable);
+  });
+}
+
+Round& Problems::cut_off(CutOffLimits limits) {
+  return cut_offs_
+      .try_emplace({limits.acts_at_once, limits.runs_urgent}, vocabulary_, executor_, Round::Kind::kCutOff,
+                   limits)
+      .first->second;
+}
+
+Problem Problems::CutOff(size_t invariant, std::optional<size_t> action, CutOffLimits limits,
+                         bool reachable) {
+  Round& round = cut_off(limits);
+  const TermId refuted = Refute(theory_.Invariant(invariant, round.end()));
+  return WithWitnesses(refuted, [&](const std::vector<TermId>& others) {
+    return StepFor(round, refuted, others, action, reachable);
   });
 }
 
@@ -233,24 +249,24 @@ std::vector<TermId> Problems::Witnesses(const Problem& problem) {
   return result;
 }
 
-Problem Problems::StepFor(TermId refuted, const std::vector<TermId>& others, std::optional<size_t> action,
-                          bool reachable) {
+Problem Problems::StepFor(Round& round, TermId refuted, const std::vector<TermId>& others,
+                          std::optional<size_t> action, bool reachable) {
   std::vector<Assertion> assertions{{refuted, ""}};
-  Append(assertions, round_.Relate(refuted, Everyone(), others));
-  const std::vector<TermId> participants = round_.participants();
-  if (action) assertions.push_back({First(*action, round_.readers()), ""});
-  if (options_.expand) assertions.push_back({Succeeds(participants), ""});
+  Append(assertions, round.Relate(refuted, Everyone(), others));
+  const std::vector<TermId> participants = round.participants();
+  if (action) assertions.push_back({First(round, *action), ""});
+  if (options_.expand) assertions.push_back({Succeeds(round), ""});
   for (const TermId r : participants) {
-    std::vector<Assertion>& promises = promises_[r];
-    if (promises.empty()) promises = theory_.PortPromises(round_, r);
+    std::vector<Assertion>& promises = promises_[{&round, r}];
+    if (promises.empty()) promises = theory_.PortPromises(round, r);
     for (const Assertion& p : promises)
       assertions.push_back({arena_.Implies(vocabulary_.IsRobot(r), p.formula), p.group});
   }
-  Append(assertions, Everything(round_.start()));
-  Append(assertions, theory_.PortFacts(round_.end()));
+  Append(assertions, Everything(round.start()));
+  for (const View& moment : round.moments()) Append(assertions, theory_.PortFacts(moment));
   if (reachable) {
-    Append(assertions, theory_.DeclaredValues(round_.start()));
-    Append(assertions, theory_.Initially(round_.start()));
+    Append(assertions, theory_.DeclaredValues(round.start()));
+    Append(assertions, theory_.Initially(round.start()));
   }
   return Ground(std::move(assertions), participants);
 }

@@ -47,6 +47,10 @@ class Problems {
   /// round).
   /// @param reachable  the state at the start is initial as well.
   Problem Step(size_t invariant, std::optional<size_t> action, bool reachable);
+  /// States [Cut]: the same, for rounds in which robots may be cut off from the others.
+  Problem CutOff(size_t invariant, std::optional<size_t> action, CutOffLimits limits, bool reachable = false);
+  /// Returns the round of these problems.
+  Round& cut_off(CutOffLimits limits);
   /// Reports whether there are robots that the denied invariant reads, whose actions are the cases of `Step`.
   /// Else a round has one case: what any robot does.
   bool HasCases(size_t invariant);
@@ -69,6 +73,8 @@ class Problems {
   size_t specification(Part part) const { return round_.actions().size() + static_cast<size_t>(part); }
   /// Returns what reports call an action or part of the specification.
   std::string NameOf(size_t place) const;
+  /// Returns the place of a fallback, by its number in the model.
+  size_t fallback(size_t f) const { return round_.actions().size() + kParts + f; }
 
   /// States a sanity check: satisfiable if for some arguments no result of function `f` satisfies its
   /// summaries.
@@ -104,11 +110,11 @@ class Problems {
   void AddDistances(Problem& problem);
   Problem WithWitnesses(TermId refuted, const std::function<Problem(const std::vector<TermId>&)>& state);
   Problem InitiallyFor(TermId refuted, const std::vector<TermId>& others);
-  Problem StepFor(TermId refuted, const std::vector<TermId>& others, std::optional<size_t> action,
-                  bool reachable);
+  Problem StepFor(Round& round, TermId refuted, const std::vector<TermId>& others,
+                  std::optional<size_t> action, bool reachable);
   std::vector<TermId> Witnesses(const Problem& problem);
-  TermId Succeeds(const std::vector<TermId>& participants);
-  TermId First(size_t action, const std::vector<TermId>& participants);
+  TermId Succeeds(Round& round);
+  TermId First(Round& round, size_t action);
   TermId Refute(TermId goal);
   const Effect& EffectAt(size_t action, TermId robot);
   std::vector<DefinednessCheck> ChecksOfPart(Part part, TermId robot);
@@ -123,9 +129,10 @@ class Problems {
   Theory theory_;
   Round round_;
   std::optional<Round> init_;
+  std::map<std::pair<bool, bool>, Round> cut_offs_;  // by their limits
   TermId robot_;
   std::map<TermId, std::vector<solve::Assertion>> everything_;  // by the array `stopped` of the view
-  std::map<TermId, std::vector<solve::Assertion>> promises_;    // by robot
+  std::map<std::pair<const Round*, TermId>, std::vector<solve::Assertion>> promises_;  // by robot
   std::vector<solve::Assertion> background_;
   std::optional<Extremes> extremes_;
   solve::Witnesses witnesses_;

@@ -8,8 +8,12 @@
 
 namespace rondo::koord {
 
-Round::Round(Vocabulary& vocabulary, Executor& executor, Kind kind)
-    : vocabulary_(vocabulary), arena_(vocabulary.arena()), model_(vocabulary.model()), kind_(kind) {
+Round::Round(Vocabulary& vocabulary, Executor& executor, Kind kind, CutOffLimits limits)
+    : vocabulary_(vocabulary),
+      arena_(vocabulary.arena()),
+      model_(vocabulary.model()),
+      kind_(kind),
+      limits_(limits) {
   const bool init = kind == Kind::kInit;
   start_ = vocabulary.MakeView(init ? " declared" : "");
   // The state that `init` leaves is the start of the first round.
@@ -32,12 +36,76 @@ Round::Round(Vocabulary& vocabulary, Executor& executor, Kind kind)
       effects_.push_back(executor.Run(*event, start_, self_));
     }
   }
+  if (kind == Kind::kCutOff) CanBeCutOff(executor);
   std::vector<std::string> members;  // an event may be called `skip`
   for (const std::string& action : actions_)
     members.push_back((members.empty() ? "no event " : "event ") + action);
   action_sort_ = arena_.Enum(init ? "action at the start" : "action of a round", std::move(members));
   act_ = arena_.Declare(init ? "acts at the start" : "acts in a round", {arena_.Int()}, action_sort_);
   turn_ = arena_.Declare("place in the interleaving", {arena_.Int()}, arena_.Int());
+}
+
+void Round::CanBeCutOff(Executor& executor) {
+  const View then = vocabulary_.MakeView(" then");
+  then_ = settled_;
+  for (size_t v = 0; v < model_.variables.size(); ++v) {
+    const VariableKind kind = model_.variables[v].kind;
+    if (kind == VariableKind::kSensor || kind == VariableKind::kActuator) then_.value[v] = then.value[v];
+  }
+  const auto predicate = [&](const char* name) {
+    return arena_.Declare(name, {arena_.Int()}, arena_.Bool());
+  };
+  waits_ = predicate("waits to act");
+  changes_ = predicate("changes its mind");
+  falls_back_ = predicate("falls back");
+  for (const FallbackDef* def : model_.fallbacks) {
+    const Effect effect = executor.Run(def->code, then_, self_);
+    for (size_t v = 0; v < model_.variables.size(); ++v) {
+      const Variable& variable = model_.variables[v];
+      if (variable.kind == VariableKind::kActuator && variable.module == def->module)
+        fallback_[v] = effect.value[v];
+    }
+  }
+}
+
+// What an actuator of a robot is at the end, if its event leaves `acted` to it.
+TermId Round::ActuatorOf(size_t v, TermId r, TermId acted) {
+  const TermId before = arena_.Select(start_.value[v], r);
+  const TermId then = arena_.Select(then_.value[v], r);
+  const TermId after = arena_.Select(end_.value[v], r);
+  const auto it = fallback_.find(v);
+  const TermId fallback =
+      it == fallback_.end() ? then : Substitute(arena_, it->second, expr::Substitution{{self_, r}});
+  return arena_.And(
+      arena_.Eq(then, arena_.Ite(Waits(r), before, acted)),
+      arena_.Eq(after, arena_.Ite(Changes(r), arena_.Ite(FallsBack(r), fallback, acted), then)));
+}
+
+TermId Round::Still(const View& from, const View& to, TermId r) {
+  std::vector<TermId> same;
+  for (size_t v = 0; v < model_.variables.size(); ++v) {
+    const Variable& variable = model_.variables[v];
+    if (variable.kind != VariableKind::kSensor || variable.function >= 0) continue;
+    same.push_back(arena_.Eq(arena_.Select(from.value[v], r), arena_.Select(to.value[v], r)));
+  }
+  return arena_.And(same);
+}
+
+std::vector<Round::Leg> Round::Legs(TermId r) {
+  const TermId no_move = arena_.Not(moved_);
+  if (kind_ != Kind::kCutOff) return {{no_move, settled_, end_}};
+  // Until the actuators of this robot change, they are what they are then.
+  View first = settled_;
+  View second = then_;
+  for (size_t v = 0; v < model_.variables.size(); ++v) {
+    if (model_.variables[v].kind != VariableKind::kActuator) continue;
+    first.value[v] = then_.value[v];
+    second.value[v] = end_.value[v];
+  }
+  const TermId constant = arena_.Not(Changes(r));
+  return {{arena_.Or(no_move, Changes(r)), settled_, end_},
+          {arena_.Or(constant, Still(first, then_, r)), first, then_},
+          {arena_.Or(constant, Still(second, end_, r)), second, end_}};
 }
 
 TermId Round::Acts(TermId robot, size_t action) {
@@ -152,11 +220,12 @@ TermId Round::Written(TermId robot, const LastWriter& last) {
 TermId Round::StateOf(TermId r) {
   std::vector<TermId> facts;
   for (size_t a = 0; a < actions_.size(); ++a) {
-    if (a == 0 && kind_ == Kind::kEvents) continue;
+    if (a == 0 && kind_ != Kind::kInit) continue;
     const Effect& effect = EffectOf(a, r);
     facts.push_back(arena_.Implies(Acts(r, a), arena_.And(effect.enabled, effect.chosen)));
   }
   if (kind_ == Kind::kEvents) facts.push_back(Urgency(r));
+  if (kind_ == Kind::kCutOff) facts.push_back(MayChange(r));
   for (size_t v = 0; v < model_.variables.size(); ++v) {
     const Variable& variable = model_.variables[v];
     if (!variable.PerRobot() || variable.function >= 0) continue;
@@ -164,10 +233,14 @@ TermId Round::StateOf(TermId r) {
     const TermId after = arena_.Select(end_.value[v], r);
     if (variable.kind == VariableKind::kSensor) {
       facts.push_back(arena_.Or(moved_, arena_.Eq(after, before)));
-    } else {
-      facts.push_back(arena_.Eq(after, ByAction(
-                                           r, [&](const Effect& e) { return e.value[v]; }, before)));
+      if (kind_ == Kind::kCutOff)
+        facts.push_back(arena_.Or(moved_, arena_.Eq(arena_.Select(then_.value[v], r), before)));
+      continue;
     }
+    const TermId acted = ByAction(
+        r, [&](const Effect& e) { return e.value[v]; }, before);
+    const bool apart = kind_ == Kind::kCutOff && variable.kind == VariableKind::kActuator;
+    facts.push_back(apart ? ActuatorOf(v, r, acted) : arena_.Eq(after, acted));
   }
   const TermId stopped = arena_.Select(start_.stopped, r);
   if (vocabulary_.robots_stop())
@@ -197,6 +270,30 @@ TermId Round::Urgency(TermId r) {
         arena_.Or({arena_.Not(moved_), arena_.Not(Acts(r, 0)), waits, arena_.And(urgent.locks, held)}));
     for (size_t a = 1; a < actions_.size(); ++a) {
       if (!model_.events[a - 1]->urgent) facts.push_back(arena_.Or(arena_.Not(Acts(r, a)), waits));
+    }
+  }
+  return arena_.And(facts);
+}
+
+// When the actuators of a robot change in the middle of a round: it falls back, or what its event wrote comes late.
+TermId Round::MayChange(TermId r) {
+  std::vector<TermId> facts;
+  std::vector<TermId> late{arena_.Not(Changes(r)), FallsBack(r)};
+  for (size_t a = 1; a < actions_.size() && !limits_.acts_at_once; ++a) {
+    const auto writes = [&](size_t v) {
+      return model_.variables[v].kind == VariableKind::kActuator &&
+             effects_[a].value[v] != arena_.Select(start_.value[v], self_);
+    };
+    bool any = false;
+    for (size_t v = 0; v < model_.variables.size(); ++v) any = any || writes(v);
+    if (any) late.push_back(arena_.And(Acts(r, a), Waits(r)));
+  }
+  facts.push_back(arena_.Or(late));
+  if (limits_.runs_urgent) {
+    facts.push_back(Urgency(r));
+    for (size_t u = 1; u < actions_.size(); ++u) {
+      if (model_.events[u - 1]->urgent)
+        facts.push_back(arena_.Or(arena_.Not(Acts(r, u)), arena_.Not(Waits(r))));
     }
   }
   return arena_.And(facts);

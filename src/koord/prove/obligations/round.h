@@ -10,6 +10,12 @@
 /// States what one round can do, as formulas for a solver.
 namespace rondo::koord {
 
+/// Says what rounds in which robots are cut off leave out.
+struct CutOffLimits {
+  bool acts_at_once = false;  ///< events reach actuators as the round begins, or never
+  bool runs_urgent = false;   ///< who has an urgent event to run is not cut off
+};
+
 /// States one round, or the execution of `init` by every robot, as a relation between the state at its start
 /// and a state at any later moment of it (docs/theory.md, "The round"):
 /// - each robot runs at most one event, or skips; all read the values at the start (EventTrans, SkipEvent);
@@ -19,14 +25,20 @@ namespace rondo::koord {
 /// - then the environment may have moved the sensors, within the controller assumptions (EnvTrans).
 /// A robot that has not run yet is one that skips, so the relation covers every prefix of the interleaving.
 ///
+/// Of robots that can be cut off from the others (kCutOff), actuators follow on their own: what the event of a robot
+/// writes reaches them at once, later, or never, and its fallback may take over at any moment (docs/theory.md, "Robots that
+/// are cut off").
+///
 /// The relation is stated for chosen robots, the participants: the others do not matter to a formula that
 /// does not read their state, except as last writers, and those are participants of their own.
 class Round {
  public:
-  /// Says which transition it is: the events of a round, or `init` of every robot.
-  enum class Kind : uint8_t { kEvents, kInit };
+  /// Says which transition it is: the events of a round, or `init` of every robot; or the events of a round in which
+  /// robots may be cut off.
+  enum class Kind : uint8_t { kEvents, kInit, kCutOff };
 
-  Round(Vocabulary& vocabulary, Executor& executor, Kind kind);
+  /// @param limits  of kCutOff: what is not looked at.
+  Round(Vocabulary& vocabulary, Executor& executor, Kind kind, CutOffLimits limits = {});
 
   /// Returns the state at the start of the round, and the one at the moment that the relation leads to.
   const View& start() const { return start_; }
@@ -36,6 +48,25 @@ class Round {
   const View& settled() const { return settled_; }
   /// Returns whether the environment has moved already.
   TermId moved() const { return moved_; }
+  /// Holds a time in which actuators of a robot stay as they are: unless `still`, controllers keep what they promise
+  /// at `from` until `to`.
+  struct Leg {
+    TermId still;
+    View from, to;
+  };
+  /// Returns, of kCutOff: when each robot's actuators change, the state as far as it is this robot's; and of a robot,
+  /// whether what its event writes does not reach its actuators before, whether they change at all, and whether by its
+  /// fallback.
+  const View& then() const { return then_; }
+  TermId Waits(TermId robot) { return If(waits_, robot); }
+  TermId Changes(TermId robot) { return If(changes_, robot); }
+  TermId FallsBack(TermId robot) { return If(falls_back_, robot); }
+  /// Returns the states at moments of the round behind its start.
+  std::vector<View> moments() const {
+    return kind_ == Kind::kCutOff ? std::vector<View>{then_, end_} : std::vector<View>{end_};
+  }
+  /// Returns the legs of a round, as one robot goes them.
+  std::vector<Leg> Legs(TermId robot);
 
   /// Returns the names of the actions of this round: `skip` first (unless it is `init`), then the events.
   const std::vector<std::string>& actions() const { return actions_; }
@@ -63,12 +94,17 @@ class Round {
     TermId robot;
   };
 
+  void CanBeCutOff(Executor& executor);
   void Participate(TermId robot);
   void FindReads(TermId goal);
   void FindCells(TermId goal);
   TermId PartOf(TermId whole, const LastWriter& last);
   TermId StateOf(TermId robot);
+  TermId ActuatorOf(size_t variable, TermId robot, TermId acted);
+  TermId Still(const View& from, const View& to, TermId robot);
+  TermId If(expr::SymbolId predicate, TermId robot) { return arena_.Apply(predicate, {robot}); }
   TermId Urgency(TermId robot);
+  TermId MayChange(TermId robot);
   TermId Locks();
   TermId WriterOf(const LastWriter& last);
   TermId Wrote(TermId robot, const LastWriter& last);
@@ -79,10 +115,17 @@ class Round {
   expr::Arena& arena_;
   const Model& model_;
   Kind kind_;
+  CutOffLimits limits_;
   View start_;
   View end_;
   View settled_;
   TermId moved_;
+  // Of kCutOff, by robot: sensors and actuators when its actuators change (arrays of their own, so each robot has its
+  // moment); whether what its event writes does not reach them before that; whether they change at all; to what its
+  // fallback says, or to what its event wrote.
+  View then_;
+  expr::SymbolId waits_, changes_, falls_back_;
+  std::map<size_t, TermId> fallback_;  // by actuator, for `self_`, at `then_`
   TermId self_;
   expr::SymbolId act_;
   expr::SymbolId turn_;  // the place of a robot in the interleaving

@@ -60,6 +60,11 @@ std::vector<Task> ListTasks(Problems& problems) {
     if (!problems.ChecksOf(place).empty())
       add(TaskKind::kDefined, 0, place, "defined (" + problems.NameOf(place) + ")");
   }
+  for (size_t f = 0; f < problems.vocabulary().model().fallbacks.size(); ++f) {
+    const size_t place = problems.fallback(f);
+    if (!problems.ChecksOf(place).empty())
+      add(TaskKind::kDefined, 0, place, "defined (" + problems.NameOf(place) + ")");
+  }
   for (const size_t f : problems.theory().SummarisedFunctions())
     add(TaskKind::kImpossible, f, 0, "sanity.summary");
   add(TaskKind::kSomeInitial, 0, 0, "sanity.initially");
@@ -91,6 +96,16 @@ std::vector<Task> SplitRounds(std::vector<Task> tasks, Problems& problems) {
   return result;
 }
 
+std::vector<Task> SplitCutOff(const Task& task, Problems& problems) {
+  std::vector<Task> result;
+  for (const size_t a : Columns(problems)) {
+    result.push_back(
+        {TaskKind::kCutOffStep, task.subject, a, task.name + " " + problems.round().actions()[a]});
+    result.back().limits = task.limits;
+  }
+  return result;
+}
+
 Problem StateTask(const Task& task, Problems& problems, Effort effort) {
   problems.distances = effort == Effort::kFew ? Distances::Detail::kDistance : Distances::Detail::kAll;
   switch (effort) {
@@ -114,6 +129,10 @@ Problem StateTask(const Task& task, Problems& problems, Effort effort) {
       return problems.Step(task.subject, task.action, false);
     case TaskKind::kFollows:
       return problems.Follows(task.subject, task.premises);
+    case TaskKind::kCutOff:
+      return problems.CutOff(task.subject, std::nullopt, task.limits);
+    case TaskKind::kCutOffStep:
+      return problems.CutOff(task.subject, task.action, task.limits);
     case TaskKind::kDefined:
       return problems.Defined(task.action);
     case TaskKind::kImpossible:

@@ -11,9 +11,11 @@ namespace rondo::koord {
 /// Names the questions that a proof asks (`Problems` says what each means).
 enum class TaskKind : uint8_t {
   kInitially,
-  kRound,    // one invariant, any round
-  kStep,     // one invariant, the rounds in which one action is the first
-  kFollows,  // one invariant, from others at the same moment
+  kRound,       // one invariant, any round
+  kStep,        // one invariant, the rounds in which one action is the first
+  kFollows,     // one invariant, from others at the same moment
+  kCutOff,      // one invariant, any round in which robots may be cut off
+  kCutOffStep,  // the same, for one action
   kDefined,
   kImpossible,  // a summary that no function can satisfy
   kSomeInitial,
@@ -37,13 +39,15 @@ struct Task {
   solve::Answer answer = solve::Unknown{"not asked"};
   double seconds = 0;
   std::vector<size_t> premises{};  ///< of kFollows: invariants that are proved by induction
+  CutOffLimits limits{};           ///< of kCutOff and kCutOffStep
 
   bool Proved() const { return std::holds_alternative<solve::Unsat>(answer); }
   /// Reports whether the question must be unsatisfiable for the invariants to be proved. Otherwise it is a
   /// sanity check.
   bool IsObligation() const {
     return kind == TaskKind::kInitially || kind == TaskKind::kRound || kind == TaskKind::kStep ||
-           kind == TaskKind::kFollows || kind == TaskKind::kDefined;
+           kind == TaskKind::kFollows || kind == TaskKind::kDefined || kind == TaskKind::kCutOff ||
+           kind == TaskKind::kCutOffStep;
   }
 };
 
@@ -52,6 +56,8 @@ std::vector<Task> ListTasks(Problems& problems);
 /// Replaces each round that was not proved as a whole by one step for each action; other tasks stay as they
 /// are.
 std::vector<Task> SplitRounds(std::vector<Task> tasks, Problems& problems);
+/// Returns the steps of a round in which robots may be cut off, one for each action.
+std::vector<Task> SplitCutOff(const Task& task, Problems& problems);
 /// Reports whether a team of this size is small enough to spell out every quantifier over robots (at most
 /// 10^5 instances of any).
 bool CanExpand(const Model& model, int64_t robots);

@@ -202,8 +202,9 @@ std::vector<Theory::Promise> Theory::Promises(const View& settled, const View& e
 
 std::vector<Assertion> Theory::PortPromises(Round& round, TermId robot) {
   std::vector<Assertion> result;
-  for (const Promise& p : Promises(round.settled(), round.end(), robot)) {
-    result.push_back({arena_.Or({arena_.Not(round.moved()), arena_.Not(p.condition), p.promise}), p.name});
+  for (const Round::Leg& leg : round.Legs(robot)) {
+    for (const Promise& p : Promises(leg.from, leg.to, robot))
+      result.push_back({arena_.Or({leg.still, arena_.Not(p.condition), p.promise}), p.name});
   }
   return result;
 }

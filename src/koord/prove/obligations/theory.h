@@ -36,8 +36,8 @@ class Theory {
   /// Returns the controller assumptions without `when` and `old`: they are true of the ports of every robot
   /// at every moment.
   std::vector<solve::Assertion> PortFacts(const View& view);
-  /// Returns the controller assumptions about the environment transition of one robot: P at `round.settled()`
-  /// implies Q at the end (rule RobotEnv).
+  /// Returns the controller assumptions about the environment transition of one robot, for each leg of the round: P at
+  /// its start implies Q at its end (rule RobotEnv).
   std::vector<solve::Assertion> PortPromises(Round& round, TermId robot);
 
   /// Holds a controller assumption (the paper's (P, Q)) of one robot.
