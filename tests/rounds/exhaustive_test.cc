@@ -43,9 +43,10 @@ Last:
 
 struct Memory : Disk {
   bool Keep(View bytes) override {
-    record = Bytes(bytes.begin(), bytes.end());
-    return true;
+    if (!full) record = Bytes(bytes.begin(), bytes.end());
+    return !full;
   }
+  bool full = false;  // until the next life
   std::optional<Bytes> record;
 };
 
@@ -98,6 +99,7 @@ struct Robot {
     if (core != nullptr) core->Describe(bytes);
     store.Save(bytes);
     if (disk.record) w.Block(*disk.record);
+    w.Byte(disk.full ? 1 : 0);
     description = codec::Sum(bytes);
   }
   Store store;
@@ -123,13 +125,14 @@ struct World {
   // All datagrams that were ever sent, by number: each may come at any time, again and again, or never.
   std::vector<uint32_t> flying;
   std::shared_ptr<const Seen> seen = std::make_shared<Seen>();
-  int ticks = 0, crashes = 0;  // that are left
+  int ticks = 0, crashes = 0, full = 0;  // that are left
 };
 
 struct Limits {
   int ticks = 3;
   int crashes = 0;
   bool disks = false;
+  int full = 0;  // disks that take nothing from some moment on
   OnLoss on_loss = OnLoss::kEvict;
   uint64_t rounds = 2;
   size_t states = 0;  // 0: all
@@ -176,6 +179,7 @@ class Exploration {
   void Run() {
     world_.ticks = limits_.ticks;
     world_.crashes = limits_.crashes;
+    world_.full = limits_.full;
     Visit(world_);
   }
 
@@ -214,6 +218,7 @@ class Exploration {
     robot->disk = world.robots[r]->disk;
     robot->life = world.robots[r]->life + 1;
     robot->now = world.robots[r]->now;
+    robot->disk.full = false;
     robot->keeps = limits_.disks;
     const std::optional<Bytes> kept = limits_.disks ? robot->disk.record : std::nullopt;
     robot->core = std::make_unique<Core>(SettingsOf(r, robot->life), robot->store,
@@ -353,6 +358,7 @@ class Exploration {
     codec::Write(w, world.seen->acted);
     w.Number(static_cast<uint64_t>(world.ticks));
     w.Number(static_cast<uint64_t>(world.crashes));
+    w.Number(static_cast<uint64_t>(world.full));
     return codec::Sum(bytes);
   }
 
@@ -377,6 +383,15 @@ class Exploration {
       if (world.ticks > 0 && robot.core->wake() != INT64_MAX && robot.core->place().round <= limits_.rounds) {
         World next = *Step(world, r, kTick);
         --next.ticks;
+        Visit(next);
+      }
+      if (world.full > 0 && !robot.disk.full) {
+        World next = world;
+        --next.full;
+        auto full = std::make_shared<Robot>(robot);
+        full->disk.full = true;
+        full->Describe();
+        next.robots[r] = std::move(full);
         Visit(next);
       }
       if (world.crashes == 0) continue;
@@ -444,6 +459,15 @@ TEST(Exhaustive, ACrashWithADisk) {
   limits.crashes = 1;
   limits.disks = true;
   Explore(limits, 1, "a crash, with disks");
+}
+
+TEST(Exhaustive, ACrashAfterItsDiskIsFull) {
+  Limits limits;
+  limits.ticks = 1;
+  limits.crashes = 1;
+  limits.disks = true;
+  limits.full = 1;
+  Explore(limits, 1, "a crash, with a full disk");
 }
 
 TEST(Exhaustive, ACrashWithoutADisk) {

@@ -21,7 +21,9 @@ struct BuiltinName {
 constexpr BuiltinName kBuiltins[] = {
     {"pos", Builtin::kPos},   {"pos3d", Builtin::kPos}, {"mid", Builtin::kMid},   {"midpoint", Builtin::kMid},
     {"dist", Builtin::kDist}, {"len", Builtin::kLen},   {"abs", Builtin::kAbs},   {"min", Builtin::kMin},
-    {"max", Builtin::kMax},   {"old", Builtin::kOld},   {"rect", Builtin::kRect}, {"grid", Builtin::kGrid}};
+    {"max", Builtin::kMax},   {"old", Builtin::kOld},   {"rect", Builtin::kRect}, {"grid", Builtin::kGrid},
+    {"sqrt", Builtin::kSqrt}, {"hypot", Builtin::kHypot}, {"floor", Builtin::kFloor}, {"ceil", Builtin::kCeil},
+    {"round", Builtin::kRound}, {"sign", Builtin::kSign}};
 
 }  // namespace
 
@@ -119,7 +121,8 @@ void Checker::UnknownFunction(const std::string& name, Span span) {
   // Words of other languages for what is here.
   static const std::map<std::string, std::string> kOtherWords{
       {"distance", "dist"}, {"norm", "dist"},   {"midpoint", "mid"}, {"length", "len"}, {"size", "len"},
-      {"fabs", "abs"},      {"minimum", "min"}, {"maximum", "max"},  {"point", "pos"},  {"Point", "pos"}};
+      {"fabs", "abs"},      {"minimum", "min"}, {"maximum", "max"},  {"point", "pos"},  {"Point", "pos"},
+      {"root", "sqrt"},     {"ceiling", "ceil"}, {"sgn", "sign"},    {"int", "floor"},  {"trunc", "floor"}};
   if (const auto it = kOtherWords.find(name); it != kOtherWords.end()) near = it->second;
   if (!near.empty()) {
     report.Help(fmt::format("did you mean `{}`?", near)).Fix(span, near);
@@ -248,6 +251,21 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
       }
       return all_int ? types.integer() : types.real();
     }
+    case Builtin::kSqrt:
+    case Builtin::kHypot: {
+      const size_t wanted = builtin == Builtin::kHypot ? 2 : 1;
+      if (!Arity(e, wanted, wanted, name)) return types.real();
+      for (size_t i = 1; i < e.args.size(); ++i)
+        NeedType(e.args[i], types.real(), fmt::format("the argument of `{}`", name));
+      return types.real();
+    }
+    case Builtin::kFloor:
+    case Builtin::kCeil:
+    case Builtin::kRound:
+    case Builtin::kSign:
+      if (!Arity(e, 1, 1, name)) return types.integer();
+      NeedType(e.args[1], types.real(), fmt::format("the argument of `{}`", name));
+      return types.integer();
     case Builtin::kOld: {
       if (!Arity(e, 1, 1, name)) return types.error();
       if (!old_allowed_) {

@@ -85,6 +85,12 @@ enum class Builtin : uint8_t {
   kRemove,
   kAppend,
   kOld,
+  kSqrt,
+  kHypot,
+  kFloor,
+  kCeil,
+  kRound,  ///< to the nearest integer, a half away from zero
+  kSign,   ///< -1, 0 or 1
   kRect,
   kGrid  ///< only in the `explore` section
 };

@@ -21,6 +21,8 @@ const char* Describe(CheckKind kind) {
       return "this index can be out of range";
     case CheckKind::kDivision:
       return "this divisor can be zero";
+    case CheckKind::kRoot:
+      return "this root can be of a negative number";
     case CheckKind::kRemove:
       return "the item to remove may not be in the list";
     case CheckKind::kUnrolling:

@@ -416,9 +416,11 @@ std::optional<Witness> TryTeam(const Model& model, size_t invariant, WitnessOf o
     }
     if (!found || !distances) found = Confirm(problem, wanted, small, complete, solver, budget, stop);
     if (!found) return std::nullopt;
+    const bool rounded =
+        complete || !RoundsAnyNumber(problems.vocabulary(), solve::Formulas(problem.assertions));
     return Witness{
         of != WitnessOf::kRound ? std::nullopt : std::optional(storyteller.FirstAction(found->sat)),
-        found->confirmed && distances && !problems.vocabulary().uses_texts(),
+        found->confirmed && distances && rounded && !problems.vocabulary().uses_texts(),
         reachable,
         of != WitnessOf::kInitial && storyteller.Moved(found->sat),
         n,

@@ -1,11 +1,53 @@
 #include "sim/campaign/scenario.h"
 
+#include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <random>
 
 namespace rondo::sim::campaign {
 
 using runtime::rounds::OnLoss;
+
+namespace {
+
+// A majority without one of its robots may know something that the others must not decide without. So: while some are not
+// heard, the others go on; then one of these crashes, and comes back while those who were heard with it are not heard.
+void Conspire(Scenario& s, std::mt19937_64& random) {
+  const auto below = [&](uint64_t n) { return random() % n; };
+  s.on_loss = OnLoss::kEvict;
+  s.disks = below(4) != 0;
+  std::vector<uint32_t> robots(s.robots);
+  std::iota(robots.begin(), robots.end(), 0);
+  std::shuffle(robots.begin(), robots.end(), random);
+  const size_t majority = s.robots / 2 + 1;
+  // From the beginning of the session, or when it goes on without those who are not heard.
+  const bool first = below(3) == 0;
+  const Time from = first ? 0 : static_cast<Time>(below(600'000'000));
+  const Time crash =
+      from + (first || below(2) == 0 ? static_cast<Time>(below(60'000'000))
+                                     : s.patience + s.lease + static_cast<Time>(below(400'000'000)));
+  const Time back = crash + static_cast<Time>(below(40'000'000));
+  const Time end = back + 700'000'000 + static_cast<Time>(below(700'000'000));
+  for (size_t i = 0; i < s.robots; ++i) {
+    Fault fault;
+    fault.robot = robots[i];
+    if (i == 0) {
+      fault.kind = s.disks ? FaultKind::kCrash : FaultKind::kForget;
+      fault.at = crash;
+      fault.length = back - crash + 1'000'000;
+      if (s.disks && below(2) == 0)
+        s.faults.push_back({FaultKind::kDiskFull, from, crash - from, robots[i], 0, 0});
+    } else {
+      fault.kind = FaultKind::kAlone;
+      fault.at = i < majority ? crash : from;
+      fault.length = i < majority ? end - crash : back - from;
+    }
+    s.faults.push_back(fault);
+  }
+}
+
+}  // namespace
 
 Scenario Draw(uint64_t seed, size_t least, size_t most) {
   // Not the numbers that the network draws.
@@ -18,7 +60,11 @@ Scenario Draw(uint64_t seed, size_t least, size_t most) {
   s.on_loss = static_cast<OnLoss>(below(s.robots == 2 ? 2 : 3));
   s.disks = below(2) == 0;
   const Time time = s.delta * static_cast<Time>(s.rounds) * 2 / 3;
-  // Every third run is a storm: lives that are short, and datagrams that outlive them, from some moment on (the
+  if (s.robots >= 3 && below(6) == 0) {
+    Conspire(s, random);
+    return s;
+  }
+  // Every third of the others is a storm: lives that are short, and datagrams that outlive them, from some moment on (the
   // beginning of the session, half of the time).
   const bool storm = below(3) == 0;
   const Time from = storm && below(2) == 0 ? static_cast<Time>(below(static_cast<uint64_t>(time))) : 0;

@@ -69,6 +69,23 @@ TermId Executor::Inline(const lang::Expr& e, const Function& f) {
   return inner.result;
 }
 
+// As an integer, in terms of `floor`.
+TermId Executor::Rounded(TermId x, Builtin builtin) {
+  const bool whole = arena_.sort_of(x) == arena_.Int();
+  const TermId zero = arena_.Number(arena_.sort_of(x), Rational(0));
+  if (builtin == Builtin::kSign) {
+    return arena_.Ite(arena_.Lt(zero, x), arena_.IntNumber(1),
+                      arena_.Ite(arena_.Lt(x, zero), arena_.IntNumber(-1), arena_.IntNumber(0)));
+  }
+  if (whole) return x;
+  const auto floor = [&](TermId t) { return arena_.Apply(vocabulary_.Floor(), {t}); };
+  const auto ceil = [&](TermId t) { return arena_.Neg(floor(arena_.Neg(t))); };
+  if (builtin == Builtin::kFloor) return floor(x);
+  if (builtin == Builtin::kCeil) return ceil(x);
+  const TermId half = arena_.Number(arena_.Real(), Rational(1) / Rational(2));
+  return arena_.Ite(arena_.Le(zero, x), floor(arena_.Add(x, half)), ceil(arena_.Sub(x, half)));
+}
+
 TermId Executor::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) {
   switch (builtin) {
     case Builtin::kPos: {
@@ -115,6 +132,21 @@ TermId Executor::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) 
       }
       return result;
     }
+    case Builtin::kSqrt: {
+      const TermId x = As(Eval(e.args[1]), arena_.Real());
+      Check(CheckKind::kRoot, e.span, arena_.Le(arena_.Number(arena_.Real(), Rational(0)), x));
+      return arena_.Apply(vocabulary_.Sqrt(), {x});
+    }
+    case Builtin::kHypot: {
+      const TermId x = As(Eval(e.args[1]), arena_.Real());
+      const TermId y = As(Eval(e.args[2]), arena_.Real());
+      return arena_.Apply(vocabulary_.Sqrt(), {arena_.Add(arena_.Mul(x, x), arena_.Mul(y, y))});
+    }
+    case Builtin::kFloor:
+    case Builtin::kCeil:
+    case Builtin::kRound:
+    case Builtin::kSign:
+      return Rounded(Eval(e.args[1]), builtin);
     case Builtin::kOld: {
       const View* now = std::exchange(frame_.view, frame_.old);
       CHECK(frame_.view != nullptr);

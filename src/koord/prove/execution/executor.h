@@ -14,9 +14,9 @@
 /// leaves (Koord paper, Figs. 6-8; rules are named at the code that follows them).
 namespace rondo::koord {
 
-/// Names why an operation may be undefined: an index, a zero divisor, an absent item, a loop over a
+/// Names why an operation may be undefined: an index, a zero divisor, the root of a negative number, an absent item, a loop over a
 /// longer list than was unrolled, one that is repeated more often than it says, a function without a result, an `any` without values.
-enum class CheckKind : uint8_t { kIndex, kDivision, kRemove, kUnrolling, kRepeating, kReturn, kChoice };
+enum class CheckKind : uint8_t { kIndex, kDivision, kRoot, kRemove, kUnrolling, kRepeating, kReturn, kChoice };
 /// States what must hold for one operation to be defined: where control reaches it (`reached`), `holds`.
 struct DefinednessCheck {
   CheckKind kind;
@@ -138,6 +138,7 @@ class Executor {
   TermId Call(ExprId id, const lang::Expr& e);
   TermId CallFunction(const lang::Expr& e, size_t function);
   TermId CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type);
+  TermId Rounded(TermId x, Builtin builtin);
   TermId Inline(const lang::Expr& e, const Function& function);
 
   // execute.cc

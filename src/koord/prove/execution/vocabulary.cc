@@ -93,6 +93,16 @@ expr::SymbolId Vocabulary::Dist() {
   return arena_.Declare("distance of points", {pos, pos}, arena_.Real());
 }
 
+expr::SymbolId Vocabulary::Floor() {
+  uses_roundings_ = true;
+  return arena_.Declare("greatest int below", {arena_.Real()}, arena_.Int());
+}
+
+expr::SymbolId Vocabulary::Sqrt() {
+  uses_roundings_ = true;
+  return arena_.Declare("root of", {arena_.Real()}, arena_.Real());
+}
+
 TermId Vocabulary::IsRobot(TermId i) {
   return arena_.And(arena_.Le(arena_.IntNumber(0), i), arena_.Lt(i, robots_));
 }

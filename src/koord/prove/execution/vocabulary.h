@@ -44,6 +44,11 @@ class Vocabulary {
   expr::SymbolId Function(size_t function, const std::string& planner_suffix);
   /// Returns the symbol of the distance of two points (see `Distances`).
   expr::SymbolId Dist();
+  /// Returns the symbols of `floor`, from a real to an int, and of `sqrt` (see `Roundings`).
+  expr::SymbolId Floor();
+  expr::SymbolId Sqrt();
+  /// Reports whether one of them occurs.
+  bool uses_roundings() const { return uses_roundings_; }
   /// Notes that the problem has texts. These are only known to be equal or not: counterexamples with them are
   /// possible, never certain.
   void MarkTexts() { uses_texts_ = true; }
@@ -75,6 +80,7 @@ class Vocabulary {
   std::unordered_map<TypeId, SortId> sorts_;
   std::vector<TermId> literals_;
   bool uses_dist_ = false;
+  bool uses_roundings_ = false;
   bool uses_texts_ = false;
   bool robots_stop_ = false;
 };

@@ -109,6 +109,12 @@ void Problems::Instantiate(Problem& problem) {
     for (const TermId axiom : axioms) problem.assertions.push_back({axiom, ""});
   }
   if (vocabulary_.uses_dist()) AddDistances(problem);
+  if (vocabulary_.uses_roundings()) {
+    for (const TermId axiom : Roundings(vocabulary_).Axioms(solve::Formulas(problem.query.assertions))) {
+      problem.query.assertions.push_back({axiom, ""});
+      problem.assertions.push_back({axiom, ""});
+    }
+  }
 }
 
 // What is known of distances speaks of further distances, but of no further points: soon there is no more to
@@ -203,16 +209,16 @@ Problem Problems::Step(size_t invariant, std::optional<size_t> action, bool reac
   });
 }
 
-Round& Problems::cut_off(CutOffLimits limits) {
+Round& Problems::cut_off(CutOffLimits leaves_out) {
   return cut_offs_
-      .try_emplace({limits.acts_at_once, limits.runs_urgent}, vocabulary_, executor_, Round::Kind::kCutOff,
-                   limits)
+      .try_emplace({leaves_out.acts_at_once, leaves_out.runs_urgent}, vocabulary_, executor_, Round::Kind::kCutOff,
+                   leaves_out)
       .first->second;
 }
 
-Problem Problems::CutOff(size_t invariant, std::optional<size_t> action, CutOffLimits limits,
+Problem Problems::CutOff(size_t invariant, std::optional<size_t> action, CutOffLimits leaves_out,
                          bool reachable) {
-  Round& round = cut_off(limits);
+  Round& round = cut_off(leaves_out);
   const TermId refuted = Refute(theory_.Invariant(invariant, round.end()));
   return WithWitnesses(refuted, [&](const std::vector<TermId>& others) {
     return StepFor(round, refuted, others, action, reachable);

@@ -152,6 +152,29 @@ void Compiler::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) {
       }
       return;
     }
+    case Builtin::kSqrt:
+      GenAs(e.args[1], types.real());
+      span_ = e.span;
+      Emit(Op::kSqrtFloat);
+      return;
+    case Builtin::kHypot:
+      for (size_t i = 1; i < 3; ++i) GenAs(e.args[i], types.real());
+      span_ = e.span;
+      Emit(Op::kHypotFloat);
+      return;
+    case Builtin::kFloor:
+    case Builtin::kCeil:
+    case Builtin::kRound:
+    case Builtin::kSign:
+      if (types.Is(model_.TypeOf(e.args[1]), TypeKind::kInt) && builtin != Builtin::kSign)
+        return Gen(e.args[1]);
+      GenAs(e.args[1], types.real());
+      span_ = e.span;
+      Emit(builtin == Builtin::kFloor   ? Op::kFloorFloat
+           : builtin == Builtin::kCeil  ? Op::kCeilFloat
+           : builtin == Builtin::kRound ? Op::kRoundFloat
+                                        : Op::kSignFloat);
+      return;
     case Builtin::kOld:
       Emit(Op::kOld);
       Gen(e.args[1]);

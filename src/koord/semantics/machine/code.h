@@ -24,6 +24,7 @@ enum class Fault : uint8_t {
   kNone,
   kIndex,     ///< an index out of range
   kDivision,  ///< a division by zero
+  kRoot,      ///< the root of a negative number
   kRemove,    ///< `remove` of an item that is not in the list
   kReturn,    ///< a function that ends without returning a value
   kOverflow,  ///< an int beyond 64 bits, or a float that is not finite

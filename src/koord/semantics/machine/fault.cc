@@ -10,6 +10,8 @@ std::string_view Describe(Fault fault) {
       return "the index is out of range";
     case Fault::kDivision:
       return "the divisor is zero";
+    case Fault::kRoot:
+      return "the root of a negative number";
     case Fault::kRemove:
       return "the item is not in the list";
     case Fault::kReturn:

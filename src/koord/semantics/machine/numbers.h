@@ -123,6 +123,51 @@ RONDO_INSTRUCTION RunAbsFloat(Registers& r, const Instruction&) {
   return Fault::kNone;
 }
 
+RONDO_INSTRUCTION RunSqrtFloat(Registers& r, const Instruction&) {
+  const double x = ToFloat(r.top[-1]);
+  if (x < 0) {
+    RONDO_TOTAL(Root);
+    r.top[-1] = 0;
+    return Fault::kNone;
+  }
+  r.top[-1] = FloatWord(std::sqrt(x));
+  return Fault::kNone;
+}
+
+// Made of operations that are rounded alike everywhere, which `std::hypot` is not.
+RONDO_INSTRUCTION RunHypotFloat(Registers& r, const Instruction&) {
+  --r.top;
+  const double a = ToFloat(r.top[-1]);
+  const double b = ToFloat(r.top[0]);
+  const double squares = a * a + b * b;
+  return SetFinite(r, std::sqrt(squares));
+}
+
+/// Replaces the top of the stack by an int; an overflow, if it is beyond 64 bits.
+inline Fault SetInteger(Registers& r, double whole) {
+  if (!(whole >= -0x1p63 && whole < 0x1p63)) return Fault::kOverflow;
+  r.top[-1] = FromInt(static_cast<int64_t>(whole));
+  return Fault::kNone;
+}
+
+RONDO_INSTRUCTION RunFloorFloat(Registers& r, const Instruction&) {
+  return SetInteger(r, std::floor(ToFloat(r.top[-1])));
+}
+
+RONDO_INSTRUCTION RunCeilFloat(Registers& r, const Instruction&) {
+  return SetInteger(r, std::ceil(ToFloat(r.top[-1])));
+}
+
+RONDO_INSTRUCTION RunRoundFloat(Registers& r, const Instruction&) {
+  return SetInteger(r, std::round(ToFloat(r.top[-1])));
+}
+
+RONDO_INSTRUCTION RunSignFloat(Registers& r, const Instruction&) {
+  const double x = ToFloat(r.top[-1]);
+  r.top[-1] = FromInt(x > 0 ? 1 : x < 0 ? -1 : 0);
+  return Fault::kNone;
+}
+
 RONDO_INSTRUCTION RunToFloat(Registers& r, const Instruction&) {
   r.top[-1] = FromFloat(static_cast<double>(ToInt(r.top[-1])));
   return Fault::kNone;
