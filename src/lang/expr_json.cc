@@ -40,6 +40,8 @@ const char* Name(ExprKind kind) {
       return "tuple";
     case ExprKind::kQuantifier:
       return "quantifier";
+    case ExprKind::kFold:
+      return "fold";
     case ExprKind::kQuantity:
       return "quantity";
     case ExprKind::kConditional:

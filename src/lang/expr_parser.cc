@@ -119,9 +119,17 @@ bool ExprParser::TooLong(int operators) {
   return true;
 }
 
+// These words mean a fold only where a variable and its domain follow.
+bool ExprParser::AtFold() const {
+  static constexpr std::array<std::string_view, 6> kFolds = {"count", "sum", "min", "max", "argmin", "argmax"};
+  return HasFolds() && AtKind(TokenKind::kName) && std::ranges::find(kFolds, Peek().text) != kFolds.end() &&
+         Peek(1).kind == TokenKind::kName && (Peek(2).text == "in" || Peek(2).text == ",");
+}
+
 ExprId ExprParser::ParseQuantifier() {
+  const bool fold = AtFold();
   const Token& word = Take();
-  Expr quantifier{ExprKind::kQuantifier, word.span, std::string(word.text), {}, {}};
+  Expr quantifier{fold ? ExprKind::kFold : ExprKind::kQuantifier, word.span, std::string(word.text), {}, {}};
   do {
     Binder binder;
     if (!ParseBinder(binder)) return Fail(word.span);
@@ -319,6 +327,10 @@ ExprId ExprParser::ParsePrimary() {
       Take();
       return pool_.Add({ExprKind::kString, token.span, std::string(token.text), {}, {}});
     case TokenKind::kName: {
+      if (AtFold()) {
+        Depth depth(*this);
+        return depth.TooDeep() ? Fail(token.span) : ParseQuantifier();
+      }
       if (token.text == "true" || token.text == "True") {
         Take();
         return pool_.Add({ExprKind::kBool, token.span, "true", {}, {}});

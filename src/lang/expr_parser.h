@@ -37,6 +37,8 @@ class ExprParser {
   virtual bool IsUnit(std::string_view /*word*/) const { return false; }
   /// Reports whether this language has `a if c else b`.
   virtual bool HasConditionals() const { return false; }
+  /// Reports whether the language has `sum i in X: e` and its like.
+  virtual bool HasFolds() const { return false; }
   /// Is called where an expression must go on: languages in which lines end here may go on in the next line.
   virtual void AllowLineBreak() {}
   virtual ~ExprParser() = default;
@@ -74,6 +76,7 @@ class ExprParser {
  private:
   ExprId ParseImplies();
   ExprId ParseQuantifier();
+  bool AtFold() const;
   ExprId ParseOr();
   ExprId ParseAnd();
   ExprId ParseNot();

@@ -25,6 +25,7 @@ int LevelOf(const Expr& e) {
     case ExprKind::kConditional:
       return kConditionalLevel;
     case ExprKind::kQuantifier:
+    case ExprKind::kFold:
       return kQuantifierLevel;
     case ExprKind::kAny:
       return kSumLevel;
@@ -123,7 +124,8 @@ class Printer {
         const std::string last = e.args.size() > 1 ? ".." + Print(e.args[1], kSumLevel) : "";
         return fmt::format("any {} in {}{}", e.text, first, last);
       }
-      case ExprKind::kQuantifier: {
+      case ExprKind::kQuantifier:
+      case ExprKind::kFold: {
         std::string binders;
         for (const Binder& b : e.binders) {
           if (!binders.empty()) binders += ", ";

@@ -39,6 +39,7 @@ enum class ExprKind : uint8_t {
   kList,         // args: items
   kTuple,        // args: items, at least 2
   kQuantifier,   // text: forall or exists; binders; args: body
+  kFold,         // text: count, sum, min, max, argmin or argmax; binders; args: body
   kQuantity,     // text: unit; args: a literal number
   kConditional,  // `args[1] if args[0] else args[2]`
   kAny,          // `any text in ...`; args: a list, or the first and the last whole number

@@ -40,6 +40,8 @@ class Run : Stage {
  private:
   // Before the first round.
   std::optional<std::vector<Word>> ValueOf(const std::string& name, const FleetValue& given, size_t variable);
+  bool IsForEach(const FleetValue& given, size_t variable) const;
+  void ForEach(const std::string& name, const FleetValue& given, size_t variable);
   int Find(const std::string& name) const;
   std::unique_ptr<koord::semantics::Team> NewTeam(Functions& functions);
   bool MakeTeam();

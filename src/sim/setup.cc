@@ -26,6 +26,33 @@ std::optional<std::vector<Word>> Run::ValueOf(const std::string& name, const Fle
   return words;
 }
 
+// Is this no value of the variable, but one for each robot: a list of them in order, or a table of their names?
+bool Run::IsForEach(const FleetValue& given, size_t variable) const {
+  koord::semantics::Heap scratch;
+  if (koord::semantics::FromJson(model_.types, scratch, model_.variables[variable].type, given.value)) return false;
+  if (given.value.is_array()) return given.value.size() == fleet_.robots.size();
+  const auto named = [&](const std::string& name) {
+    return std::ranges::any_of(fleet_.robots, [&](const FleetRobot& robot) { return robot.name == name; });
+  };
+  bool all = given.value.is_object() && !given.value.empty();
+  if (all) {
+    for (const auto& [key, _] : given.value.items()) all = all && named(key);
+  }
+  return all;
+}
+
+void Run::ForEach(const std::string& name, const FleetValue& given, size_t variable) {
+  for (size_t r = 0; r < fleet_.robots.size(); ++r) {
+    const std::string& robot = fleet_.robots[r].name;
+    if (given.value.is_object() && !given.value.contains(robot)) continue;
+    FleetValue one = given;
+    one.value = given.value.is_object() ? given.value[robot] : given.value[r];
+    const auto words = ValueOf(fmt::format("{} of {}", name, robot), one, variable);
+    if (!words) return;
+    std::copy(words->begin(), words->end(), state_.begin() + team_->layout().Address(variable, r));
+  }
+}
+
 int Run::Find(const std::string& name) const {
   for (size_t v = 0; v < model_.variables.size(); ++v) {
     if (model_.variables[v].name == name) return static_cast<int>(v);
@@ -119,6 +146,10 @@ bool Run::BeforeInit() {
     if (!good) {
       diagnostics_.Report(Kind::kFleetValue, given.span,
                           fmt::format("the program has no variable `{}` that can start with a value", name));
+      continue;
+    }
+    if (model_.variables[v].PerRobot() && IsForEach(given, v)) {
+      ForEach(name, given, v);
       continue;
     }
     const auto words = ValueOf(name, given, v);

@@ -32,6 +32,7 @@ class Texts {
     nested_ = Pick(4) == 0;
     record_ = Pick(5) == 0;
     points_ = Pick(6) == 0;
+    folds_ = Pick(3) == 0;
     std::string text;
     if (record_) text += "def adt Rec:\n    int a\n    int k[2]\n";
     if (cells_ || nested_)
@@ -90,8 +91,21 @@ class Texts {
     }
   }
 
+  // Over all robots.
+  std::string Fold() {
+    return One({"(count i in ID: up[i])", "(count i in ID: x[i] > s)", "(sum i in ID: x[i])", "(min i in ID: x[i])",
+                "(max i in ID: x[i] - i)", "(argmin i in ID: x[i])", "(argmax i in ID: x[i] + n)",
+                "(count i in ID: exists j in ID: x[j] > x[i])"});
+  }
+  // Integers made of what is none.
+  std::string Rounded() {
+    return One({"floor(n / 2.0)", "ceil(x[pid] / 2.0 - 1)", "round(s - 0.5)", "sign(n - t)", "floor(sqrt(t * t + 1))",
+                "floor(hypot(n, s))", "floor(sqrt(abs(s)))"});
+  }
+
   // Something of what only some programs have.
   std::string Part() {
+    if (folds_ && Pick(2) == 0) return Pick(2) == 0 ? Fold() : Rounded();
     switch (Pick(4)) {
       case 0:
         if (cells_) return Pick(2) == 0 ? "c[" + std::to_string(Pick(3)) + "]" : "item(c, " + Int() + ")";
@@ -214,6 +228,11 @@ class Texts {
   }
 
   std::string Invariant() {
+    if (folds_ && Pick(2) == 0)
+      return One({"(count i in ID: up[i]) <= 1", "(count i in ID: up[i]) <= 2", "(sum i in ID: x[i]) <= 2",
+                  "(max i in ID: x[i]) <= s + 1", "(min i in ID: n[i]) <= 0", "(argmin i in ID: x[i]) == 0",
+                  "(count i in ID: up[i]) >= 1 or s <= 1", "forall j in ID: x[j] <= (max i in ID: x[i])",
+                  "(count i in ID: b[i]) < N_sys or t >= 1"});
     if (Pick(4) == 0) return Existential();
     switch (Pick(8)) {
       case 0:
@@ -258,6 +277,7 @@ class Texts {
   bool nested_ = false;
   bool record_ = false;
   bool points_ = false;
+  bool folds_ = false;
 };
 
 struct Loaded {

@@ -73,6 +73,9 @@ TypeId Checker::Call(ExprId id, const lang::Expr& e) {
         if (v.function >= 0 && v.name == v.module + "." + name) return call_port(static_cast<int>(i), v.name);
       }
     }
+    if (const auto type = model_.named_types.find(name);
+        type != model_.named_types.end() && model_.types.Is(type->second, TypeKind::kRecord))
+      return MakeRecord(id, e, type->second);
     if (IsModule(name) || model_.named_types.contains(name)) {
       diagnostics_.Report(Kind::kKoordNotCallable, callee.span, fmt::format("`{}` is not a function", name));
       for (size_t i = 1; i < e.args.size(); ++i) Expr(e.args[i]);
@@ -171,6 +174,16 @@ TypeId Checker::CallFunction(ExprId id, const lang::Expr& e, size_t index) {
   return model_.functions[index].result;
 }
 
+// Order(1, pos(0, 0, 0)): the members in order.
+TypeId Checker::MakeRecord(ExprId id, const lang::Expr& e, TypeId record) {
+  Set(id, RefKind::kBuiltin, static_cast<size_t>(Builtin::kRecord));
+  const std::vector<TypeId> parts = model_.types[record].parts;
+  const std::vector<std::string> fields = model_.types[record].fields;
+  if (!Arity(e, parts.size(), parts.size(), exprs_[e.args[0]].text)) return record;
+  for (size_t i = 0; i < parts.size(); ++i) NeedType(e.args[i + 1], parts[i], fmt::format("`{}`", fields[i]));
+  return record;
+}
+
 TypeId Checker::CallMethod(ExprId id, const lang::Expr& e) {
   auto& types = model_.types;
   const lang::Expr& callee = exprs_[e.args[0]];
@@ -251,6 +264,8 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
       }
       return all_int ? types.integer() : types.real();
     }
+    case Builtin::kRecord:
+      break;  // has no name of its own
     case Builtin::kSqrt:
     case Builtin::kHypot: {
       const size_t wanted = builtin == Builtin::kHypot ? 2 : 1;

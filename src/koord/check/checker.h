@@ -54,12 +54,16 @@ class Checker {
   TypeId Comparison(const lang::Expr& e, TypeId a, TypeId b);
   TypeId Membership(const lang::Expr& e, TypeId a);
   TypeId Quantifier(ExprId id, const lang::Expr& e);
+  TypeId Fold(ExprId id, const lang::Expr& e);  // folds.cc
   TypeId Conditional(const lang::Expr& e);
   TypeId Any(const lang::Expr& e);
   std::optional<TypeId> TypeNamed(const std::string& word) const;
   TypeId List(const lang::Expr& e);
   void NeedBool(ExprId e, std::string_view what);
   void NeedType(ExprId e, TypeId wanted, std::string_view what);
+  bool IsArrayLiteral(ExprId e, TypeId wanted) const;
+  void NeedArray(ExprId e, TypeId array, std::string_view what);
+  void InitialValue(size_t variable);
   TypeId Mismatch(diag::Span span, std::string message);
   void Set(ExprId id, RefKind kind, size_t index) {
     model_.ref_of[id.index()] = {kind, static_cast<uint32_t>(index)};
@@ -71,6 +75,7 @@ class Checker {
   TypeId CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin);
   TypeId CallFunction(ExprId id, const lang::Expr& e, size_t function);
   TypeId CallMethod(ExprId id, const lang::Expr& e);
+  TypeId MakeRecord(ExprId id, const lang::Expr& e, TypeId record);
   void UnknownFunction(const std::string& name, diag::Span span);
   size_t FunctionNamed(const std::string& name, size_t arity, diag::Span span);
   bool Arity(const lang::Expr& e, size_t least, size_t most, std::string_view name);

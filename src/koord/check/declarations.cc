@@ -24,10 +24,8 @@ Model Checker::Run() {
   DeclareTypes();
   DeclareAll();
   place_ = Place::kInit;
-  for (const Variable& v : std::vector<Variable>(model_.variables)) {
-    if (!v.initial.valid()) continue;
-    NeedType(v.initial, v.type, fmt::format("the initial value of `{}`", v.name));
-    RestrictInitial(v.initial, v);
+  for (size_t v = 0; v < model_.variables.size(); ++v) {
+    if (model_.variables[v].initial.valid()) InitialValue(v);
   }
   for (size_t f = 0; f < model_.functions.size(); ++f) {
     const FunctionDef* def = model_.functions[f].def;
@@ -66,6 +64,19 @@ Model Checker::Run() {
         .Help("an event has a name, a precondition `pre:` and an effect `eff:`");
   }
   return std::move(model_);
+}
+
+// Of an array: a list of its items, or what all of them are.
+void Checker::InitialValue(size_t variable) {
+  const Variable v = model_.variables[variable];
+  TypeId type = v.type;
+  const bool array = model_.types.Is(type, lang::TypeKind::kArray);
+  if (array && !IsArrayLiteral(v.initial, type) && exprs_[v.initial].kind != lang::ExprKind::kName) {
+    while (model_.types.Is(type, lang::TypeKind::kArray)) type = model_.types[type].parts[0];
+    model_.filled.insert(variable);
+  }
+  NeedType(v.initial, type, fmt::format("the initial value of `{}`", v.name));
+  RestrictInitial(v.initial, v);
 }
 
 void Checker::CheckOrder() {

@@ -58,6 +58,8 @@ TypeId Checker::Visit(ExprId id, const lang::Expr& e) {
     }
     case ExprKind::kQuantifier:
       return Quantifier(id, e);
+    case ExprKind::kFold:
+      return Fold(id, e);
     case ExprKind::kConditional:
       return Conditional(e);
     case ExprKind::kAny:
@@ -75,7 +77,28 @@ void Checker::NeedBool(ExprId e, std::string_view what) {
       .Under(fmt::format("this is a `{}`", model_.types.Name(type)));
 }
 
+bool Checker::IsArrayLiteral(ExprId e, TypeId wanted) const {
+  return exprs_[e].kind == ExprKind::kList && model_.types.Is(wanted, TypeKind::kArray);
+}
+
+// A list of as many items as the array has.
+void Checker::NeedArray(ExprId e, TypeId array, std::string_view what) {
+  const lang::Expr& list = exprs_[e];
+  const std::string length = model_.types[array].length;
+  const TypeId item = model_.types[array].parts[0];
+  model_.type_of[e.index()] = array;
+  const bool number = std::ranges::all_of(length, [](unsigned char c) { return std::isdigit(c) != 0; });
+  if (!number || length != std::to_string(list.args.size())) {
+    auto& report = diagnostics_.Report(Kind::kKoordTypeMismatch, list.span,
+                                       fmt::format("{} must be a `{}`", what, model_.types.Name(array)));
+    report.Under(fmt::format("these are {} items", list.args.size()));
+    if (!number) report.Help("how many items there are is known only when it runs: assign them in `init`");
+  }
+  for (const ExprId arg : list.args) NeedType(arg, item, "an item");
+}
+
 void Checker::NeedType(ExprId e, TypeId wanted, std::string_view what) {
+  if (IsArrayLiteral(e, wanted)) return NeedArray(e, wanted, what);
   const TypeId type = Expr(e);
   if (model_.types.Coerce(type, wanted)) return;
   auto& report = diagnostics_.Report(Kind::kKoordTypeMismatch, exprs_[e].span,

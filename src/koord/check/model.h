@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -85,6 +86,7 @@ enum class Builtin : uint8_t {
   kRemove,
   kAppend,
   kOld,
+  kRecord,  ///< `Order(1, p)`: a value of the record type that is the expression's
   kSqrt,
   kHypot,
   kFloor,
@@ -94,6 +96,12 @@ enum class Builtin : uint8_t {
   kRect,
   kGrid  ///< only in the `explore` section
 };
+
+/// Names what `sum i in ID: e` and its like make of the values of all robots: how many are true, the sum, the least or the
+/// greatest value, or the first robot that has it.
+enum class FoldKind : uint8_t { kCount, kSum, kMin, kMax, kArgmin, kArgmax };
+/// Returns the fold that a word means.
+std::optional<FoldKind> FoldOf(std::string_view word);
 
 /// Describes a variable of a quantifier, loop, function or summary.
 struct Binding {
@@ -123,6 +131,8 @@ struct Model {
   std::map<std::string, TypeId> named_types;
   /// Holds the lengths of arrays, by the text that is part of their types; without `kRobotsLength`.
   std::map<std::string, ExprId> lengths;
+  /// Holds the arrays whose initial value is that of each item: `int a[3] = 0`.
+  std::set<size_t> filled;
   std::vector<const EventDef*> events;
   std::vector<const InitDef*> inits;
   std::vector<const FallbackDef*> fallbacks;  ///< at most one for each module

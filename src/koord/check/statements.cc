@@ -185,7 +185,9 @@ void Checker::Assign(const Stmt& stmt) {
   auto& types = model_.types;
   const TypeId target = Target(stmt.target);
   const bool plus = stmt.kind != StmtKind::kAssign;
-  if (stmt.value.valid()) {
+  if (stmt.value.valid() && target.valid() && !plus && IsArrayLiteral(stmt.value, target)) {
+    NeedArray(stmt.value, target, "the value");
+  } else if (stmt.value.valid()) {
     const TypeId given = Expr(stmt.value);
     if (!target.valid()) return;
     if (!types.Coerce(given, target)) {

@@ -85,7 +85,7 @@ class Storyteller {
       const auto it = sat.values.find(term);
       if (it == sat.values.end()) return;
       const int64_t r = robot.valid() ? number(robot) : -1;
-      if (!end && seen.insert({v, r}).second) state.values.push_back({v, r, it->second, {}});
+      if (!end && seen.insert({v, r}).second) state.values.push_back({v, r, it->second, {}, {}});
       for (WitnessState::Value& value : state.values) {
         if (end && value.variable == v && value.robot == r) value.end = it->second;
       }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "koord/check/spec_labels.h"
 #include "koord/semantics/machine/values.h"
@@ -17,6 +18,35 @@ std::unique_ptr<Team> Team::Make(const Model& model, const TeamOptions& options,
   std::unique_ptr<Team> team(new Team(model, std::move(heap)));
   if (!team->Parameters(options, diagnostics) || !team->Compile(options, diagnostics)) return nullptr;
   return team;
+}
+
+// `param int a[4] = 0`: lengths are not known yet, unless they are numbers.
+std::optional<std::vector<Word>> Team::Filled(
+    const Variable& variable,
+    const std::function<std::optional<std::vector<Word>>(ExprId, TypeId)>& evaluate,
+    diag::Diagnostics& diagnostics) {
+  std::vector<size_t> dimensions;
+  TypeId type = variable.type;
+  size_t items = 1;
+  for (; model_.types.Is(type, TypeKind::kArray); type = model_.types[type].parts[0]) {
+    const std::string& text = model_.types[type].length;
+    size_t length = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), length);
+    items = problem != std::errc() || end != text.data() + text.size() || length > 1'000'000 ? 0 : items * length;
+    if (items == 0 || items > 1'000'000) {
+      diagnostics.Report(Kind::kKoordNotExecutable, variable.span,
+                         fmt::format("how many items `{}` has is not known yet", variable.name));
+      return std::nullopt;
+    }
+    dimensions.push_back(length);
+  }
+  auto value = evaluate(variable.initial, type);
+  for (size_t d = dimensions.size(); value && d-- > 0;) {
+    std::vector<Word> all;
+    for (size_t i = 0; i < dimensions[d]; ++i) all.insert(all.end(), value->begin(), value->end());
+    value = std::vector<Word>{heap_.Intern(all)};
+  }
+  return value;
 }
 
 // Parameters, in the order of their declaration, and the lengths of arrays.
@@ -58,6 +88,8 @@ bool Team::Parameters(const TeamOptions& options, diag::Diagnostics& diagnostics
     const auto explored = model_.exploration.values.find(v);
     if (fixed != options.params.end()) {
       value = fixed->second;
+    } else if (variable.initial.valid() && model_.filled.contains(v)) {
+      value = Filled(variable, evaluate, diagnostics);
     } else if (variable.initial.valid()) {
       value = evaluate(variable.initial, variable.type);
     } else if (explored != model_.exploration.values.end()) {

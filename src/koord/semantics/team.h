@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -133,6 +134,10 @@ class Team {
   Team(const Model& model, Heap heap) : model_(model), heap_(std::move(heap)) {}
   void MakeBlank();
   std::vector<Word> Default(TypeId type);
+  std::optional<std::vector<Word>> Filled(
+      const Variable& variable,
+      const std::function<std::optional<std::vector<Word>>(ExprId, TypeId)>& evaluate,
+      diag::Diagnostics& diagnostics);
   bool Parameters(const TeamOptions& options, diag::Diagnostics& diagnostics);
   bool Compile(const TeamOptions& options, diag::Diagnostics& diagnostics);
   void Specification(Compiler& compiler);

@@ -19,6 +19,7 @@ class Parser : public lang::ExprParser {
  protected:
   bool IsReserved(std::string_view word) const override { return IsReservedWord(word); }
   bool HasConditionals() const override { return true; }
+  bool HasFolds() const override { return true; }
   void AllowLineBreak() override {
     if (in_specification_) AcceptContinuation("");
   }

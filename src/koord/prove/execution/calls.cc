@@ -132,6 +132,12 @@ TermId Executor::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) 
       }
       return result;
     }
+    case Builtin::kRecord: {
+      const std::vector<TypeId> parts = model_.types[type].parts;
+      std::vector<TermId> fields;
+      for (size_t i = 0; i < parts.size(); ++i) fields.push_back(EvalAs(e.args[i + 1], parts[i]));
+      return arena_.MakeRecord(vocabulary_.SortOf(type), std::move(fields));
+    }
     case Builtin::kSqrt: {
       const TermId x = As(Eval(e.args[1]), arena_.Real());
       Check(CheckKind::kRoot, e.span, arena_.Le(arena_.Number(arena_.Real(), Rational(0)), x));

@@ -163,6 +163,7 @@ TermId Executor::Eval(ExprId id) {
     case ExprKind::kBinary:
       return Binary(e);
     case ExprKind::kList: {
+      if (model_.types.Is(model_.TypeOf(id), lang::TypeKind::kArray)) return MakeArray(id, e);
       const SortId element = arena_.sort(vocabulary_.SortOf(model_.TypeOf(id))).parts[0];
       std::vector<TermId> items;
       for (const ExprId item : e.args) items.push_back(As(Eval(item), element));
@@ -175,6 +176,8 @@ TermId Executor::Eval(ExprId id) {
     }
     case ExprKind::kQuantifier:
       return Quantifier(id, e);
+    case ExprKind::kFold:
+      return Fold(id, e);
     case ExprKind::kConditional: {
       const TermId condition = Eval(e.args[0]);
       const SortId sort = vocabulary_.SortOf(model_.TypeOf(id));
@@ -189,6 +192,44 @@ TermId Executor::Eval(ExprId id) {
   }
   CHECK(false) << "an erroneous expression got past the checker";
   return {};
+}
+
+// What the array has behind its items does not matter (see `EqualValues`).
+TermId Executor::MakeArray(ExprId id, const lang::Expr& e) {
+  const TypeId type = model_.TypeOf(id);
+  const TypeId item = model_.types[type].parts[0];
+  TermId array = arena_.FreshConstant("array", vocabulary_.SortOf(type));
+  for (size_t i = 0; i < e.args.size(); ++i)
+    array = arena_.Store(array, arena_.IntNumber(static_cast<int64_t>(i)), EvalAs(e.args[i], item));
+  return array;
+}
+
+TermId Executor::HasInitialValue(size_t variable, TermId whole, const View& parameters, TermId robot) {
+  const Variable& v = model_.variables[variable];
+  TypeId type = v.type;
+  const bool filled = model_.filled.contains(variable);
+  while (filled && model_.types.Is(type, lang::TypeKind::kArray)) type = model_.types[type].parts[0];
+  const TermId value = Value(v.initial, type, parameters, robot);
+  // Lengths of arrays are made of parameters.
+  frame_ = Frame{&parameters, nullptr, robot, false, nullptr, nullptr, {}};
+  if (filled) return Filled(whole, v.type, value);
+  return model_.types.Is(type, lang::TypeKind::kArray) ? EqualValues(whole, value, type) : arena_.Eq(whole, value);
+}
+
+TermId Executor::Filled(TermId whole, TypeId type, TermId value) {
+  if (!model_.types.Is(type, lang::TypeKind::kArray)) return arena_.Eq(whole, value);
+  const TypeId item = model_.types[type].parts[0];
+  const TermId length = ArrayLength(type);
+  constexpr int64_t kSpelledOut = 64;
+  if (const auto count = ConstantInt(length); count && *count <= kSpelledOut) {
+    std::vector<TermId> parts;
+    for (int64_t i = 0; i < *count; ++i)
+      parts.push_back(Filled(arena_.Select(whole, arena_.IntNumber(i)), item, value));
+    return arena_.And(parts);
+  }
+  const TermId k = arena_.FreshBound("k", arena_.Int());
+  return arena_.Forall({k},
+                       arena_.Implies(InRange(k, length), Filled(arena_.Select(whole, k), item, value)));
 }
 
 // Rule Var-Lookup: from the robot's own copy, never from what others write in this round.

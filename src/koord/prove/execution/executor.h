@@ -75,9 +75,17 @@ class Executor {
   /// nullptr.
   TermId Specification(ExprId e, const View& view, TermId robot, const View* old,
                        const std::map<uint32_t, TermId>& bindings);
+  /// Returns the formula that `whole`, a variable or the cell of a robot, has its declared initial value. Reports it if the
+  /// value may not exist.
+  TermId HasInitialValue(size_t variable, TermId whole, const View& parameters, TermId robot);
   /// Returns an initial value for `robot`: an expression over parameters, as a value of `type`. Reports it if
   /// it may have none.
   TermId Value(ExprId e, TypeId type, const View& parameters, TermId robot);
+  /// Returns what is known of the folds over robots that were evaluated so far (`min i in ID: e`), unless they were spelled
+  /// out: of `min` and the like everything, of `count` whether it is 0, 1, more, or all, of `sum` nothing.
+  const std::vector<TermId>& Folds() const { return folds_; }
+  /// Reports whether a formula speaks of a fold that is not spelled out.
+  bool MentionsFold(TermId formula) const;
   /// Reports whether quantifiers over robots become conjunctions.
   bool expands_robots() const { return options_.expand_robots; }
   /// Reports whether the last specification mentioned the robot.
@@ -123,6 +131,13 @@ class Executor {
   TermId Concatenate(TermId a, TermId b);
   TermId Quantifier(ExprId id, const lang::Expr& e);
   TermId Any(ExprId id, const lang::Expr& e);
+  // folds.cc
+  TermId Fold(ExprId id, const lang::Expr& e);
+  TermId Folded(FoldKind kind, const std::vector<TermId>& values);
+  TermId Plus(TermId a, TermId b);
+  TermId Defined(FoldKind kind, TermId robot, TermId body, const std::vector<TermId>& parameters);
+  TermId MakeArray(ExprId id, const lang::Expr& e);
+  TermId Filled(TermId whole, TypeId type, TermId value);
   TermId ReadVariable(size_t variable);
   TermId ReadCell(size_t variable, TermId robot, ExprId at);
   TermId Index(ExprId id, const lang::Expr& e);
@@ -175,6 +190,10 @@ class Executor {
   std::vector<TermId> conditions_;  // of short-circuit operators around the expression in hand
   std::vector<TermId> quantified_;  // variables of quantifiers around it
   bool used_robot_ = false;
+  std::map<ExprId, TermId> fold_robots_;  // the variable of a fold
+  std::map<std::tuple<FoldKind, TermId, std::vector<TermId>>, TermId> folded_;  // by body and what is free in it
+  std::vector<TermId> folds_;
+  std::unordered_set<expr::SymbolId> fold_functions_;
   std::vector<DefinednessCheck> specification_checks_;
 };
 

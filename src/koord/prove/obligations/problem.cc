@@ -76,6 +76,7 @@ Problem Problems::Ground(std::vector<Assertion> assertions, std::vector<TermId> 
   // The background comes last: only now is it known which literals are in use.
   if (background_.empty()) background_ = theory_.Background();
   Append(assertions, background_);
+  for (const TermId fold : executor_.Folds()) assertions.push_back({fold, ""});
   if (!options_.expand) {
     if (!extremes_) extremes_.emplace(vocabulary_);
     Append(assertions, extremes_->Axioms(assertions));
@@ -191,7 +192,9 @@ Problem Problems::WithWitnesses(TermId refuted,
   Problem problem = state(others);
   constexpr int kPasses = 2;
   constexpr size_t kMostOthers = 8;
-  for (int pass = 0; pass < kPasses && arena_.HasQuantifier(refuted) && !options_.expand; ++pass) {
+  // Of a number of robots, those who are counted are named by what is known of it.
+  const bool unnamed = arena_.HasQuantifier(refuted) || executor_.MentionsFold(refuted);
+  for (int pass = 0; pass < kPasses && unnamed && !options_.expand; ++pass) {
     const size_t before = others.size();
     for (const TermId robot : Witnesses(problem)) {
       if (others.size() < kMostOthers) others.push_back(robot);

@@ -108,9 +108,7 @@ std::vector<Assertion> Theory::Facts() {
   for (size_t v = 0; v < model_.variables.size(); ++v) {
     const Variable& variable = model_.variables[v];
     if (variable.kind != VariableKind::kParam || !variable.initial.valid()) continue;
-    result.push_back(
-        {arena_.Eq(parameters.value[v], executor_.Value(variable.initial, variable.type, parameters, {})),
-         ""});
+    result.push_back({executor_.HasInitialValue(v, parameters.value[v], parameters, {}), ""});
   }
   return result;
 }
@@ -143,8 +141,7 @@ std::vector<Assertion> Theory::Background() {
   for (size_t v = 0; v < model_.variables.size(); ++v) {
     const Variable& variable = model_.variables[v];
     if (variable.kind != VariableKind::kParam || !variable.initial.valid()) continue;
-    const TermId value = executor_.Value(variable.initial, variable.type, parameters, {});
-    result.push_back({arena_.Eq(parameters.value[v], value), ""});
+    result.push_back({executor_.HasInitialValue(v, parameters.value[v], parameters, {}), ""});
   }
   for (const TermId axiom : vocabulary_.Axioms()) result.push_back({axiom, ""});
   return result;
@@ -156,13 +153,13 @@ std::vector<Assertion> Theory::DeclaredValues(const View& view) {
   for (size_t v = 0; v < model_.variables.size(); ++v) {
     const Variable& variable = model_.variables[v];
     if (variable.kind == VariableKind::kParam || !variable.initial.valid()) continue;
-    const auto value = [&](TermId robot) {
-      return executor_.Value(variable.initial, variable.type, parameters, robot);
+    const auto has_value = [&](TermId whole, TermId robot) {
+      return executor_.HasInitialValue(v, whole, parameters, robot);
     };
     const TermId fact =
         variable.PerRobot()
-            ? ForEachRobot([&](TermId r) { return arena_.Eq(arena_.Select(view.value[v], r), value(r)); })
-            : arena_.Eq(view.value[v], value({}));
+            ? ForEachRobot([&](TermId r) { return has_value(arena_.Select(view.value[v], r), r); })
+            : has_value(view.value[v], {});
     result.push_back({fact, ""});
   }
   result.push_back({ForEachRobot([&](TermId r) { return arena_.Not(arena_.Select(view.stopped, r)); }), ""});

@@ -152,6 +152,9 @@ void Compiler::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) {
       }
       return;
     }
+    case Builtin::kRecord:
+      for (size_t i = 1; i < e.args.size(); ++i) GenAs(e.args[i], types[type].parts[i - 1]);
+      return;
     case Builtin::kSqrt:
       GenAs(e.args[1], types.real());
       span_ = e.span;

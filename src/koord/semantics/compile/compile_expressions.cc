@@ -31,7 +31,8 @@ std::string Unquoted(const std::string& text) {
 // A list literal of ints may stand where a list of floats is needed.
 void Compiler::GenAs(ExprId id, TypeId type) {
   const lang::Expr& e = exprs_[id];
-  if (e.kind == ExprKind::kList && model_.types.Is(type, TypeKind::kList)) {
+  const bool sequence = model_.types.Is(type, TypeKind::kList) || model_.types.Is(type, TypeKind::kArray);
+  if (e.kind == ExprKind::kList && sequence) {
     const TypeId element = model_.types[type].parts[0];
     for (const ExprId item : e.args) GenAs(item, element);
     span_ = e.span;
@@ -127,6 +128,8 @@ void Compiler::Gen(ExprId id) {
       return;
     case ExprKind::kQuantifier:
       return Quantifier(id, e);
+    case ExprKind::kFold:
+      return Fold(id, e);
     case ExprKind::kConditional:
       return Conditional(id, e);
     case ExprKind::kAny:

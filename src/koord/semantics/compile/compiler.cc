@@ -69,7 +69,14 @@ uint32_t Compiler::Statements(const std::vector<Stmt>& body) {
 uint32_t Compiler::Initial(size_t v, ExprId e) {
   Begin();
   const auto entry = static_cast<uint32_t>(Here());
-  GenAs(e, model_.variables[v].type);
+  TypeId type = model_.variables[v].type;
+  const bool filled = model_.filled.contains(v);
+  while (filled && model_.types.Is(type, lang::TypeKind::kArray)) type = model_.types[type].parts[0];
+  GenAs(e, type);
+  // From the innermost arrays outwards.
+  const std::vector<uint32_t>& dimensions = layout_[v].dimensions;
+  for (size_t d = dimensions.size(); filled && d-- > 0;)
+    Emit(Op::kListFill, dimensions[d], d + 1 == dimensions.size() ? Width(type) : 1);
   Store(v);
   Emit(Op::kEnd);
   Functions();

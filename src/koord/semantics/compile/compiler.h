@@ -103,6 +103,7 @@ class Compiler {
     ExprId list;
   };
   void Quantifier(ExprId id, const lang::Expr& e);
+  void Fold(ExprId id, const lang::Expr& e);
   void Loop(const std::vector<Bound>& all, size_t i, ExprId body, bool forall, std::vector<size_t>& decided);
   struct Limit {
     ExprId value;

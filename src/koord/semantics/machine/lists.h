@@ -14,6 +14,15 @@ RONDO_INSTRUCTION RunListMake(Registers& r, const Instruction& i) {
   return Fault::kNone;
 }
 
+RONDO_INSTRUCTION RunListFill(Registers& r, const Instruction& i) {
+  r.top -= i.b;
+  std::vector<Word> items;
+  items.reserve(static_cast<size_t>(i.a) * i.b);
+  for (uint32_t k = 0; k < i.a; ++k) items.insert(items.end(), r.top, r.top + i.b);
+  *r.top++ = r.m.heap.Intern(items);
+  return Fault::kNone;
+}
+
 RONDO_INSTRUCTION RunListLength(Registers& r, const Instruction& i) {
   r.top[-1] = r.m.heap[r.top[-1]].size() / i.a;
   return Fault::kNone;
