@@ -64,6 +64,7 @@ enum class RefKind : uint8_t {
   kBinding,      ///< a variable of a quantifier, loop, function or summary: index into `bindings`
   kMember,       ///< member `index` of the enumeration that is the expression's type
   kSystemSize,   ///< N_sys
+  kStopped,      ///< `stopped[i]` in a specification: args[1] is the robot
   kFunction,     ///< of a call: index into `functions`
   kBuiltin,      ///< of a call: index is a Builtin
   kOpaqueField,  ///< a member of an opaque type: the function `index` of the base

@@ -191,6 +191,11 @@ TypeId Checker::Index(ExprId id, const lang::Expr& e) {
       if (variable.kind == VariableKind::kAllread || other)
         return ReadVariable(id, static_cast<size_t>(v), RefKind::kCell);
     }
+    // Whether a robot has executed `stop`.
+    if (!hidden && v < 0 && base.text == "stopped" && place_ == Place::kSpec) {
+      Set(id, RefKind::kStopped, 0);
+      return types.boolean();
+    }
     if (!hidden && IsModule(base.text)) {
       diagnostics_.Report(Kind::kKoordTypeMismatch, e.span, "a module of a robot is not a value")
           .Help("name one of its ports");

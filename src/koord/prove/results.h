@@ -50,6 +50,7 @@ struct WitnessState {
   std::vector<Actuators> actuators;
   std::vector<Value> values;
   std::vector<int64_t> stopped;                     ///< robots that had stopped at the start
+  std::vector<int64_t> stopped_after;               ///< and at the end
   std::vector<std::pair<int64_t, size_t>> actions;  ///< each robot with its action; 0: it skips
 };
 

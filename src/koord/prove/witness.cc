@@ -48,6 +48,7 @@ class Storyteller {
       wanted_.push_back(round_.moved());
       for (const TermId robot : robots_) {
         wanted_.push_back(arena_.Select(round_.start().stopped, robot));
+        wanted_.push_back(arena_.Select(round_.end().stopped, robot));
         for (size_t a = 0; a < round_.actions().size(); ++a) {
           wanted_.push_back(round_.Acts(robot, a));
           for (const ReadRecord& read : round_.EffectOf(a, robot).reads) {
@@ -95,6 +96,7 @@ class Storyteller {
       const int64_t r = number(robot);
       if (initial || !told.insert(r).second) continue;
       if (IsTrue(sat, arena_.Select(round_.start().stopped, robot))) state.stopped.push_back(r);
+      if (IsTrue(sat, arena_.Select(round_.end().stopped, robot))) state.stopped_after.push_back(r);
       for (size_t a = 0; a < round_.actions().size(); ++a) {
         if (IsTrue(sat, round_.Acts(robot, a))) state.actions.emplace_back(r, a);
       }

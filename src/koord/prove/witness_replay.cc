@@ -148,13 +148,23 @@ class Replay {
     }
     for (const int64_t r : witness_.stopped) {
       if (r < 0 || r >= witness_.robots) return Refuse("a robot has no number");
-      start_[team_->layout().block(static_cast<size_t>(r)) + team_->layout().stopped()] = 1;
+      start_[Mark(r)] = 1;
     }
+    for (const int64_t r : witness_.stopped_after) {
+      if (r < 0 || r >= witness_.robots) return Refuse("a robot has no number");
+      end_[Mark(r)] = 1;
+    }
+    // Nobody goes on who has stopped; where no robot can stop, nothing is said of it.
+    for (const int64_t r : witness_.stopped) end_[Mark(r)] = 1;
     for (size_t r = 0; r < team_->robots(); ++r)
       known[team_->layout().block(r) + team_->layout().stopped()] = true;
     if (!std::all_of(known.begin(), known.end(), [](bool k) { return k; }))
       return Refuse("the counterexample does not give every value");
     return true;
+  }
+
+  uint32_t Mark(int64_t robot) const {
+    return team_->layout().block(static_cast<size_t>(robot)) + team_->layout().stopped();
   }
 
   bool Holds(std::vector<Word>& state, size_t invariant) {
@@ -176,7 +186,6 @@ class Replay {
       for (size_t r = 0; r < team_->robots(); ++r)
         std::fill_n(sensor.begin() + layout.Address(v, r), layout[v].width, true);
     }
-    for (size_t r = 0; r < team_->robots(); ++r) sensor[layout.block(r) + layout.stopped()] = true;
     std::vector<Word> settled;
     transition.Enumerate([&](std::span<const Word> state, bool complete) {
       if (witness_.moved && !complete) return true;
@@ -187,10 +196,6 @@ class Replay {
       return false;
     });
     if (settled.empty()) return Differs("no choice of events and last writers leads to its end");
-    for (size_t r = 0; r < team_->robots(); ++r) {
-      const uint32_t stopped = layout.block(r) + layout.stopped();
-      end_[stopped] = settled[stopped];
-    }
     if (!witness_.moved) {
       return settled == end_ ? WitnessReplay{ReplayOutcome::kReplayed, ""}
                              : Differs("sensors differ although the environment did not move");
@@ -235,7 +240,7 @@ class Replay {
     std::string why = "no choice of events and last writers leads to its end";
     transition.Enumerate([&](std::span<const Word> state, bool) {
       for (size_t i = 0; i < state.size(); ++i) {
-        if (!sensors_[i] && !actuators_[i] && state[i] != end_[i] && !IsMark(i)) return true;
+        if (!sensors_[i] && !actuators_[i] && state[i] != end_[i]) return true;
       }
       agreed.assign(state.begin(), state.end());
       why.clear();
@@ -243,14 +248,6 @@ class Replay {
       return !why.empty();
     });
     return why.empty() ? WitnessReplay{ReplayOutcome::kReplayed, ""} : Differs(why);
-  }
-
-  bool IsMark(size_t at) const {
-    const semantics::Layout& layout = team_->layout();
-    for (size_t r = 0; r < team_->robots(); ++r) {
-      if (at == layout.block(r) + layout.stopped()) return true;
-    }
-    return false;
   }
 
   // Why the actuators or sensors of a robot cannot do this; empty if they can.

@@ -31,6 +31,7 @@ class Judge {
     if (name && ref.kind == RefKind::kVariable && model_.variables[ref.index].kind == VariableKind::kAllread)
       return false;
     if (ref.kind == RefKind::kCell && e.kind == ExprKind::kIndex) return IsRobot(e.args[1]);
+    if (ref.kind == RefKind::kStopped) return IsRobot(e.args[1]);
     if (ref.kind == RefKind::kPortOf) return IsRobot(exprs_[e.args[0]].args[1]);
     if (e.kind == ExprKind::kBinary && (e.text == "==" || e.text == "!=") && IsRobot(e.args[0]) &&
         IsRobot(e.args[1]))

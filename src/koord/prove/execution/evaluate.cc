@@ -146,6 +146,12 @@ TermId Executor::Eval(ExprId id) {
           return arena_.Member(vocabulary_.SortOf(model_.TypeOf(id)), ref.index);
         case RefKind::kSystemSize:
           return vocabulary_.robots();
+        case RefKind::kStopped: {
+          const TermId robot = Eval(e.args[1]);
+          Check(CheckKind::kIndex, e.span, vocabulary_.IsRobot(robot));
+          if (!vocabulary_.robots_stop()) return arena_.False();
+          return arena_.Select(frame_.view->stopped, robot);
+        }
         case RefKind::kOpaqueField:
           return arena_.Apply(vocabulary_.Function(ref.index, ""), {Eval(e.args[0])});
         case RefKind::kFunction:

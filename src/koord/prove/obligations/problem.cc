@@ -242,6 +242,8 @@ std::vector<TermId> Problems::Witnesses(const Problem& problem) {
     arrays.insert(round_.end().value[v]);
     if (init_) arrays.insert(init_->start().value[v]);
   }
+  arrays.insert(round_.start().stopped);
+  arrays.insert(round_.end().stopped);
   std::vector<TermId> result;
   std::unordered_set<TermId> seen;
   const auto add = [&](const std::vector<TermId>& known, TermId robot) {

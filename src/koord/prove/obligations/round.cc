@@ -150,6 +150,8 @@ void Round::FindReads(TermId goal) {
           arena_.op(t) == expr::Op::kSelect && arena_.arg(t, 0) == end_.value[v] && !arena_.IsOpen(t);
       if (selects && variable.PerRobot()) Participate(arena_.arg(t, 1));
     }
+    if (arena_.op(t) == expr::Op::kSelect && arena_.arg(t, 0) == end_.stopped && !arena_.IsOpen(t))
+      Participate(arena_.arg(t, 1));
   });
   FindCells(goal);
 }

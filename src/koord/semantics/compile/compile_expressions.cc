@@ -102,6 +102,11 @@ void Compiler::Gen(ExprId id) {
           return;
         case RefKind::kMember:
           return Constant(ref.index);
+        case RefKind::kStopped:
+          Gen(e.args[1]);
+          span_ = e.span;
+          Emit(Op::kCell, layout_.stopped(), 1);
+          return;
         case RefKind::kSystemSize:
           return Constant(FromInt(static_cast<int64_t>(layout_.robots())));
         case RefKind::kOpaqueField:
