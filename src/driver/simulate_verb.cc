@@ -92,6 +92,9 @@ std::string Summary(const sim::SimulationReport& report, double seconds,
     case sim::Ending::kStopped:
       text += "  every robot stopped\n";
       break;
+    case sim::Ending::kQuiet:
+      text += "  nothing moves any more, and no event can run\n";
+      break;
     case sim::Ending::kMapped:
       text += "  the map is complete\n";
       break;

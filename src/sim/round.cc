@@ -16,9 +16,11 @@ void Run::Round(uint64_t k) {
   RoundExecution round(*team_);
   round.Begin(state_);
   std::vector<std::string> chosen(bodies_.size());
+  bool idle = true;
   for (const size_t r : Order(k)) {
     const auto enabled = round.Enabled(r);
     if (enabled.empty()) continue;
+    idle = false;
     const bool urgent = team_->events()[enabled[0]].urgent;
     if (!urgent && fleet_.skip > 0 && Uniform(random_) < fleet_.skip) continue;
     const uint32_t event = Choose(enabled, k, r);
@@ -43,6 +45,17 @@ void Run::Round(uint64_t k) {
   monitor_->Settled(t, state_);
   Environment(t);
   After(t + fleet_.delta);
+  // Sensors that see noise may see something new; the others only if something moves, or `reached` is still to come.
+  idle = idle && AtRest() && (!periods_.scans || fleet_.lidar.noise == 0);
+  quiet_since_ = idle ? std::min(quiet_since_, t) : kNeverQuiet;
+  if (report_.ended == Ending::kTime && t + fleet_.delta - quiet_since_ >= std::max(2.0, 2 * fleet_.delta))
+    report_.ended = Ending::kQuiet;
+}
+
+bool Run::AtRest() const {
+  constexpr double kSlow = 1e-3;  // m/s
+  return std::ranges::all_of(
+      bodies_, [](const auto& body) { return Distance(body->velocity(), Point{}) < kSlow; });
 }
 
 std::vector<size_t> Run::Order(uint64_t k) {
@@ -134,7 +147,7 @@ void Run::After(double t) {
   bool stopped = true;
   for (size_t r = 0; r < bodies_.size(); ++r)
     stopped = stopped && state_[team_->layout().block(r) + team_->layout().stopped()] != 0;
-  if (stopped && fleet_.until != Until::kMapped) report_.ended = Ending::kStopped;
+  if (stopped && AtRest() && fleet_.until != Until::kMapped) report_.ended = Ending::kStopped;
   const auto map = SharedMap();
   if (map && map->cells != last_map_) {
     last_map_ = map->cells;

@@ -61,6 +61,7 @@ class Run : Stage {
   void Fails(size_t robot, const koord::node::Failure& failure, double t);
   std::optional<GridMap> SharedMap() const;
   void After(double t);
+  bool AtRest() const;
 
   // The environment's turn.
   uint32_t At(const Port& port, size_t robot) const;
@@ -125,6 +126,8 @@ class Run : Stage {
   std::unique_ptr<koord::node::Node> store_;            // the last that is final, for the monitor
   std::vector<std::vector<koord::node::Cell>> fallen_;  // by robot: actuators that are not as the store says
   double settled_at_ = -1;                              // seconds; before the first round nothing is
+  static constexpr double kNeverQuiet = 1e300;
+  double quiet_since_ = kNeverQuiet;  // seconds: no event could run, and nothing moved
   std::mt19937_64 random_;
   std::vector<Word> state_;
   std::vector<Word> settled_;

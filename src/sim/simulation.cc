@@ -44,6 +44,8 @@ std::string_view Name(Ending ending) {
   switch (ending) {
     case Ending::kTime:
       return "time";
+    case Ending::kQuiet:
+      return "quiet";
     case Ending::kStopped:
       return "stopped";
     case Ending::kMapped:

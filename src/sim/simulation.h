@@ -37,13 +37,14 @@ struct SimulationOptions {
 /// Tells why a simulation ended.
 enum class Ending : uint8_t {
   kTime,         ///< its time was over
-  kStopped,      ///< every robot stopped
+  kStopped,      ///< every robot stopped, and no body moves
+  kQuiet,        ///< nothing moves any more, and no event can run
   kMapped,       ///< the map is complete
   kInterrupted,  ///< somebody asked it to stop
   kFailed,       ///< an operation of the program has no value, or the state of a body is not finite
 };
 
-/// Returns `time`, `stopped`, `mapped`, `interrupted` or `failed`, as traces and JSON have it.
+/// Returns `time`, `stopped`, `quiet`, `mapped`, `interrupted` or `failed`, as traces and JSON have it.
 std::string_view Name(Ending ending);
 
 /// Tells something that must not happen, and did, how often it was seen, and when first.

@@ -71,6 +71,20 @@ TEST(Simulation, EndsWhenEveryRobotHasStopped) {
   EXPECT_EQ(outcome.report.events, 7U);
 }
 
+TEST(Simulation, EndsWhenNothingMovesAndNothingCanHappen) {
+  const Outcome outcome = Play(kGo, Masses(1, 60));
+  EXPECT_EQ(outcome.report.ended, Ending::kQuiet);
+  EXPECT_GT(outcome.report.time, 2);
+  EXPECT_LT(outcome.report.time, 30);
+  // Who stops on its way is still on it.
+  const Outcome far = Play(
+      "using Motion:\n    actuators:\n        pos target\nGo:\n    eff:\n        Motion.target = pos(3, 0, 0)\n"
+      "        stop\n",
+      Masses(1, 60));
+  EXPECT_EQ(far.report.ended, Ending::kStopped);
+  EXPECT_GT(far.report.time, 1);
+}
+
 TEST(Simulation, AnOperationWithoutAResultEndsIt) {
   const Outcome outcome = Play(Local("        n = 1 / n\n"), Masses(1));
   EXPECT_EQ(outcome.report.ended, Ending::kFailed);
@@ -163,6 +177,7 @@ TEST(Simulation, SkippingIsAProbabilityAndNotForUrgentEvents) {
 
 TEST(Simulation, EndingsHaveNames) {
   EXPECT_EQ(Name(Ending::kTime), "time");
+  EXPECT_EQ(Name(Ending::kQuiet), "quiet");
   EXPECT_EQ(Name(Ending::kInterrupted), "interrupted");
   EXPECT_EQ(Name(Ending::kFailed), "failed");
 }
