@@ -30,7 +30,7 @@ def run(rondo, args, path):
 
 
 def normalise(text):
-    return re.sub(r" +\d+\.\d\d\d? s", "  T s", text)
+    return re.sub(r"; \d+\.\d x real time", "", re.sub(r" +\d+\.\d\d\d? s", "  T s", text))
 
 
 def expected(rondo, path, source_lines):

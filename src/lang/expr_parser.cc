@@ -121,7 +121,8 @@ bool ExprParser::TooLong(int operators) {
 
 // These words mean a fold only where a variable and its domain follow.
 bool ExprParser::AtFold() const {
-  static constexpr std::array<std::string_view, 6> kFolds = {"count", "sum", "min", "max", "argmin", "argmax"};
+  static constexpr std::array<std::string_view, 6> kFolds = {"count", "sum",    "min",
+                                                             "max",   "argmin", "argmax"};
   return HasFolds() && AtKind(TokenKind::kName) && std::ranges::find(kFolds, Peek().text) != kFolds.end() &&
          Peek(1).kind == TokenKind::kName && (Peek(2).text == "in" || Peek(2).text == ",");
 }

@@ -54,8 +54,8 @@ void Run::Round(uint64_t k) {
 
 bool Run::AtRest() const {
   constexpr double kSlow = 1e-3;  // m/s
-  return std::ranges::all_of(
-      bodies_, [](const auto& body) { return Distance(body->velocity(), Point{}) < kSlow; });
+  return std::ranges::all_of(bodies_,
+                             [](const auto& body) { return Distance(body->velocity(), Point{}) < kSlow; });
 }
 
 std::vector<size_t> Run::Order(uint64_t k) {

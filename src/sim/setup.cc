@@ -29,7 +29,8 @@ std::optional<std::vector<Word>> Run::ValueOf(const std::string& name, const Fle
 // Is this no value of the variable, but one for each robot: a list of them in order, or a table of their names?
 bool Run::IsForEach(const FleetValue& given, size_t variable) const {
   koord::semantics::Heap scratch;
-  if (koord::semantics::FromJson(model_.types, scratch, model_.variables[variable].type, given.value)) return false;
+  if (koord::semantics::FromJson(model_.types, scratch, model_.variables[variable].type, given.value))
+    return false;
   if (given.value.is_array()) return given.value.size() == fleet_.robots.size();
   const auto named = [&](const std::string& name) {
     return std::ranges::any_of(fleet_.robots, [&](const FleetRobot& robot) { return robot.name == name; });

@@ -93,14 +93,14 @@ class Texts {
 
   // Over all robots.
   std::string Fold() {
-    return One({"(count i in ID: up[i])", "(count i in ID: x[i] > s)", "(sum i in ID: x[i])", "(min i in ID: x[i])",
-                "(max i in ID: x[i] - i)", "(argmin i in ID: x[i])", "(argmax i in ID: x[i] + n)",
-                "(count i in ID: exists j in ID: x[j] > x[i])"});
+    return One({"(count i in ID: up[i])", "(count i in ID: x[i] > s)", "(sum i in ID: x[i])",
+                "(min i in ID: x[i])", "(max i in ID: x[i] - i)", "(argmin i in ID: x[i])",
+                "(argmax i in ID: x[i] + n)", "(count i in ID: exists j in ID: x[j] > x[i])"});
   }
   // Integers made of what is none.
   std::string Rounded() {
-    return One({"floor(n / 2.0)", "ceil(x[pid] / 2.0 - 1)", "round(s - 0.5)", "sign(n - t)", "floor(sqrt(t * t + 1))",
-                "floor(hypot(n, s))", "floor(sqrt(abs(s)))"});
+    return One({"floor(n / 2.0)", "ceil(x[pid] / 2.0 - 1)", "round(s - 0.5)", "sign(n - t)",
+                "floor(sqrt(t * t + 1))", "floor(hypot(n, s))", "floor(sqrt(abs(s)))"});
   }
 
   // Something of what only some programs have.

@@ -176,7 +176,7 @@ check("certify nothing", rondo("certify", "missing.cert").returncode == 1)
 out = FOLDER / "smt"
 check("smt-out", rondo("prove", "--no-cache", LINEFORM, "--smt-out", str(out)).returncode == 0)
 files = sorted(out.glob("*.smt2"))
-check("smt files", len(files) == 6, [f.name for f in files])
+check("smt files", len(files) == 8, [f.name for f in files])
 for file in files:
     answer = subprocess.run(["cvc5", "--lang=smt2", str(file)], capture_output=True, text=True, timeout=300).stdout
     check(f"cvc5 on {file.name}", answer.strip() == "unsat", answer)

@@ -43,6 +43,7 @@ def examples(rondo, folder):
         "lineform": (0, set()),
         "shapeform": (0, set()),
         "mapping": (0, set()),
+        "crossing": (0, set()),
         # A quadrotor does not hold its position exactly, as the proof assumes.
         "delivery": (1, {"assumption `Motion.holds`", "invariant `parked`"}),
     }

@@ -19,11 +19,12 @@ struct BuiltinName {
   Builtin builtin;
 };
 constexpr BuiltinName kBuiltins[] = {
-    {"pos", Builtin::kPos},   {"pos3d", Builtin::kPos}, {"mid", Builtin::kMid},   {"midpoint", Builtin::kMid},
-    {"dist", Builtin::kDist}, {"len", Builtin::kLen},   {"abs", Builtin::kAbs},   {"min", Builtin::kMin},
-    {"max", Builtin::kMax},   {"old", Builtin::kOld},   {"rect", Builtin::kRect}, {"grid", Builtin::kGrid},
-    {"sqrt", Builtin::kSqrt}, {"hypot", Builtin::kHypot}, {"floor", Builtin::kFloor}, {"ceil", Builtin::kCeil},
-    {"round", Builtin::kRound}, {"sign", Builtin::kSign}};
+    {"pos", Builtin::kPos},      {"pos3d", Builtin::kPos},   {"mid", Builtin::kMid},
+    {"midpoint", Builtin::kMid}, {"dist", Builtin::kDist},   {"len", Builtin::kLen},
+    {"abs", Builtin::kAbs},      {"min", Builtin::kMin},     {"max", Builtin::kMax},
+    {"old", Builtin::kOld},      {"rect", Builtin::kRect},   {"grid", Builtin::kGrid},
+    {"sqrt", Builtin::kSqrt},    {"hypot", Builtin::kHypot}, {"floor", Builtin::kFloor},
+    {"ceil", Builtin::kCeil},    {"round", Builtin::kRound}, {"sign", Builtin::kSign}};
 
 }  // namespace
 
@@ -123,9 +124,9 @@ void Checker::UnknownFunction(const std::string& name, Span span) {
   std::string near = lang::Suggest(name, known);
   // Words of other languages for what is here.
   static const std::map<std::string, std::string> kOtherWords{
-      {"distance", "dist"}, {"norm", "dist"},   {"midpoint", "mid"}, {"length", "len"}, {"size", "len"},
-      {"fabs", "abs"},      {"minimum", "min"}, {"maximum", "max"},  {"point", "pos"},  {"Point", "pos"},
-      {"root", "sqrt"},     {"ceiling", "ceil"}, {"sgn", "sign"},    {"int", "floor"},  {"trunc", "floor"}};
+      {"distance", "dist"}, {"norm", "dist"},    {"midpoint", "mid"}, {"length", "len"}, {"size", "len"},
+      {"fabs", "abs"},      {"minimum", "min"},  {"maximum", "max"},  {"point", "pos"},  {"Point", "pos"},
+      {"root", "sqrt"},     {"ceiling", "ceil"}, {"sgn", "sign"},     {"int", "floor"},  {"trunc", "floor"}};
   if (const auto it = kOtherWords.find(name); it != kOtherWords.end()) near = it->second;
   if (!near.empty()) {
     report.Help(fmt::format("did you mean `{}`?", near)).Fix(span, near);

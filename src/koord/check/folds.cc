@@ -30,7 +30,8 @@ TypeId Checker::Fold(ExprId id, const lang::Expr& e) {
                       FindVariable("ID") < 0;
   if (!robots || e.binders.size() > 1 || binder.names.size() > 1) {
     diagnostics_
-        .Report(Kind::kKoordTypeMismatch, e.span, fmt::format("`{}` goes over all robots, one variable", e.text))
+        .Report(Kind::kKoordTypeMismatch, e.span,
+                fmt::format("`{}` goes over all robots, one variable", e.text))
         .Help(fmt::format("write `{} i in ID: ...`; for lists, use a loop", e.text));
     return otherwise;
   }
@@ -44,13 +45,15 @@ TypeId Checker::Fold(ExprId id, const lang::Expr& e) {
     NeedBool(e.args[0], "the body of `count`");
   } else {
     const TypeId body = Expr(e.args[0]);
-    const bool point = kind == FoldKind::kSum && types.Is(body, TypeKind::kRecord) && types.Resolve(body) == types.pos();
+    const bool point =
+        kind == FoldKind::kSum && types.Is(body, TypeKind::kRecord) && types.Resolve(body) == types.pos();
     if (!types.IsNumeric(body) && !point && !types.Is(body, TypeKind::kError)) {
       auto& report = diagnostics_.Report(Kind::kKoordTypeMismatch, exprs_[e.args[0]].span,
                                          fmt::format("the body of `{}` must be a number", e.text));
       report.Under(fmt::format("this is a `{}`", types.Name(body)));
       // The body reaches as far as it can.
-      if (types.Is(body, TypeKind::kBool)) report.Help(fmt::format("write `({} i in ID: ...) <= 5` with brackets", e.text));
+      if (types.Is(body, TypeKind::kBool))
+        report.Help(fmt::format("write `({} i in ID: ...) <= 5` with brackets", e.text));
     } else if (kind == FoldKind::kSum || kind == FoldKind::kMin || kind == FoldKind::kMax) {
       result = body;
     }

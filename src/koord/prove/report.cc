@@ -217,7 +217,13 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
   if (!witness.reachable)
     report.Note(
         "this state may be unreachable: the induction could not exclude it; `rondo prove --reach 6` looks for a run to it");
-  if (witness.environment) {
+  const bool promised = std::ranges::any_of(
+      model_.assumptions, [](const AssumeDef* def) { return def->kind == AssumeKind::kPort; });
+  if (witness.environment && promised && !witness.reachable) {
+    report.Help(
+        "add an invariant that excludes the state at the start of this round, or say more of what the controller\n"
+        "guarantees");
+  } else if (witness.environment) {
     report.Help("say what the controller guarantees: `assume M when ... always ...`");
   } else if (!witness.reachable) {
     report.Help("add an invariant that excludes the state at the start of this round");

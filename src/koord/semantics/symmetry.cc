@@ -23,8 +23,9 @@ class Judge {
     const Ref ref = model_.RefOf(id);
     if (IsRobot(id)) return false;  // in a place that no rule below allows
     // The first robot of several is one that others are not; sums of floats are rounded in an order.
-    if (e.kind == ExprKind::kFold && (e.text.starts_with("arg") ||
-                                      (e.text == "sum" && !model_.types.Is(model_.TypeOf(id), lang::TypeKind::kInt))))
+    if (e.kind == ExprKind::kFold &&
+        (e.text.starts_with("arg") ||
+         (e.text == "sum" && !model_.types.Is(model_.TypeOf(id), lang::TypeKind::kInt))))
       return false;
     // A whole row or array has an order.
     const bool name = e.kind == ExprKind::kName || e.kind == ExprKind::kField;

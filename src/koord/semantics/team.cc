@@ -22,8 +22,7 @@ std::unique_ptr<Team> Team::Make(const Model& model, const TeamOptions& options,
 
 // `param int a[4] = 0`: lengths are not known yet, unless they are numbers.
 std::optional<std::vector<Word>> Team::Filled(
-    const Variable& variable,
-    const std::function<std::optional<std::vector<Word>>(ExprId, TypeId)>& evaluate,
+    const Variable& variable, const std::function<std::optional<std::vector<Word>>(ExprId, TypeId)>& evaluate,
     diag::Diagnostics& diagnostics) {
   std::vector<size_t> dimensions;
   TypeId type = variable.type;
@@ -32,7 +31,8 @@ std::optional<std::vector<Word>> Team::Filled(
     const std::string& text = model_.types[type].length;
     size_t length = 0;
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), length);
-    items = problem != std::errc() || end != text.data() + text.size() || length > 1'000'000 ? 0 : items * length;
+    items =
+        problem != std::errc() || end != text.data() + text.size() || length > 1'000'000 ? 0 : items * length;
     if (items == 0 || items > 1'000'000) {
       diagnostics.Report(Kind::kKoordNotExecutable, variable.span,
                          fmt::format("how many items `{}` has is not known yet", variable.name));

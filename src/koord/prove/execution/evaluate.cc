@@ -219,7 +219,8 @@ TermId Executor::HasInitialValue(size_t variable, TermId whole, const View& para
   // Lengths of arrays are made of parameters.
   frame_ = Frame{&parameters, nullptr, robot, false, nullptr, nullptr, {}};
   if (filled) return Filled(whole, v.type, value);
-  return model_.types.Is(type, lang::TypeKind::kArray) ? EqualValues(whole, value, type) : arena_.Eq(whole, value);
+  return model_.types.Is(type, lang::TypeKind::kArray) ? EqualValues(whole, value, type)
+                                                       : arena_.Eq(whole, value);
 }
 
 TermId Executor::Filled(TermId whole, TypeId type, TermId value) {
@@ -234,8 +235,7 @@ TermId Executor::Filled(TermId whole, TypeId type, TermId value) {
     return arena_.And(parts);
   }
   const TermId k = arena_.FreshBound("k", arena_.Int());
-  return arena_.Forall({k},
-                       arena_.Implies(InRange(k, length), Filled(arena_.Select(whole, k), item, value)));
+  return arena_.Forall({k}, arena_.Implies(InRange(k, length), Filled(arena_.Select(whole, k), item, value)));
 }
 
 // Rule Var-Lookup: from the robot's own copy, never from what others write in this round.

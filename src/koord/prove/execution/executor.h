@@ -16,7 +16,16 @@ namespace rondo::koord {
 
 /// Names why an operation may be undefined: an index, a zero divisor, the root of a negative number, an absent item, a loop over a
 /// longer list than was unrolled, one that is repeated more often than it says, a function without a result, an `any` without values.
-enum class CheckKind : uint8_t { kIndex, kDivision, kRoot, kRemove, kUnrolling, kRepeating, kReturn, kChoice };
+enum class CheckKind : uint8_t {
+  kIndex,
+  kDivision,
+  kRoot,
+  kRemove,
+  kUnrolling,
+  kRepeating,
+  kReturn,
+  kChoice
+};
 /// States what must hold for one operation to be defined: where control reaches it (`reached`), `holds`.
 struct DefinednessCheck {
   CheckKind kind;
@@ -191,7 +200,8 @@ class Executor {
   std::vector<TermId> quantified_;  // variables of quantifiers around it
   bool used_robot_ = false;
   std::map<ExprId, TermId> fold_robots_;  // the variable of a fold
-  std::map<std::tuple<FoldKind, TermId, std::vector<TermId>>, TermId> folded_;  // by body and what is free in it
+  std::map<std::tuple<FoldKind, TermId, std::vector<TermId>>, TermId>
+      folded_;  // by body and what is free in it
   std::vector<TermId> folds_;
   std::unordered_set<expr::SymbolId> fold_functions_;
   std::vector<DefinednessCheck> specification_checks_;

@@ -119,19 +119,21 @@ TermId Executor::Defined(FoldKind kind, TermId robot, TermId body, const std::ve
     const TermId missing = function("not counted", arena_.Int());
     const auto number = [&](int64_t n) { return arena_.IntNumber(n); };
     const TermId second = arena_.FreshBound("second", arena_.Int());
-    facts = {arena_.Le(number(0), count), arena_.Le(count, vocabulary_.robots()),
-             arena_.Implies(arena_.Le(count, number(0)), all(arena_.Not(body))),
-             arena_.Implies(arena_.Le(number(1), count), arena_.And(vocabulary_.IsRobot(one), of(one))),
-             arena_.Implies(arena_.Le(count, number(1)),
-                            arena_.Forall({robot, second},
-                                          arena_.Or({arena_.Not(vocabulary_.IsRobot(robot)),
-                                                     arena_.Not(vocabulary_.IsRobot(second)), arena_.Not(body),
-                                                     arena_.Not(of(second)), arena_.Eq(robot, second)}))),
-             arena_.Implies(arena_.Le(number(2), count),
-                            arena_.And({vocabulary_.IsRobot(other), of(other), arena_.Not(arena_.Eq(one, other))})),
-             arena_.Implies(arena_.Le(vocabulary_.robots(), count), all(body)),
-             arena_.Implies(arena_.Lt(count, vocabulary_.robots()),
-                            arena_.And(vocabulary_.IsRobot(missing), arena_.Not(of(missing))))};
+    facts = {
+        arena_.Le(number(0), count),
+        arena_.Le(count, vocabulary_.robots()),
+        arena_.Implies(arena_.Le(count, number(0)), all(arena_.Not(body))),
+        arena_.Implies(arena_.Le(number(1), count), arena_.And(vocabulary_.IsRobot(one), of(one))),
+        arena_.Implies(arena_.Le(count, number(1)),
+                       arena_.Forall({robot, second},
+                                     arena_.Or({arena_.Not(vocabulary_.IsRobot(robot)),
+                                                arena_.Not(vocabulary_.IsRobot(second)), arena_.Not(body),
+                                                arena_.Not(of(second)), arena_.Eq(robot, second)}))),
+        arena_.Implies(arena_.Le(number(2), count), arena_.And({vocabulary_.IsRobot(other), of(other),
+                                                                arena_.Not(arena_.Eq(one, other))})),
+        arena_.Implies(arena_.Le(vocabulary_.robots(), count), all(body)),
+        arena_.Implies(arena_.Lt(count, vocabulary_.robots()),
+                       arena_.And(vocabulary_.IsRobot(missing), arena_.Not(of(missing))))};
     it->second = count;
   } else {
     const TermId whose = function("whose", arena_.Int());

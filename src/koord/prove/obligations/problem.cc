@@ -214,8 +214,8 @@ Problem Problems::Step(size_t invariant, std::optional<size_t> action, bool reac
 
 Round& Problems::cut_off(CutOffLimits leaves_out) {
   return cut_offs_
-      .try_emplace({leaves_out.acts_at_once, leaves_out.runs_urgent}, vocabulary_, executor_, Round::Kind::kCutOff,
-                   leaves_out)
+      .try_emplace({leaves_out.acts_at_once, leaves_out.runs_urgent}, vocabulary_, executor_,
+                   Round::Kind::kCutOff, leaves_out)
       .first->second;
 }
 

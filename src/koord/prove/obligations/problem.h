@@ -49,7 +49,8 @@ class Problems {
   /// @param reachable  the state at the start is initial as well.
   Problem Step(size_t invariant, std::optional<size_t> action, bool reachable);
   /// States [Cut]: the same, for rounds in which robots may be cut off from the others.
-  Problem CutOff(size_t invariant, std::optional<size_t> action, CutOffLimits leaves_out, bool reachable = false);
+  Problem CutOff(size_t invariant, std::optional<size_t> action, CutOffLimits leaves_out,
+                 bool reachable = false);
   /// Returns the round of these problems.
   Round& cut_off(CutOffLimits leaves_out);
   /// Reports whether there are robots that the denied invariant reads, whose actions are the cases of `Step`.

@@ -39,8 +39,8 @@ std::vector<TermId> Roundings::Axioms(const std::vector<TermId>& formulas) {
   for (const auto& [t, root] : terms) {
     const TermId x = arena_.arg(t, 0);
     if (root) {
-      axioms.push_back(arena_.Implies(arena_.Le(zero, x),
-                                      arena_.And(arena_.Le(zero, t), arena_.Eq(arena_.Mul(t, t), x))));
+      axioms.push_back(
+          arena_.Implies(arena_.Le(zero, x), arena_.And(arena_.Le(zero, t), arena_.Eq(arena_.Mul(t, t), x))));
       continue;
     }
     const TermId below = arena_.ToReal(t);
@@ -52,8 +52,7 @@ std::vector<TermId> Roundings::Axioms(const std::vector<TermId>& formulas) {
 
 bool RoundsAnyNumber(Vocabulary& vocabulary, const std::vector<TermId>& formulas) {
   bool any = false;
-  EachRounding(vocabulary, formulas,
-               [&](TermId t, bool) { any = any || vocabulary.arena().IsOpen(t); });
+  EachRounding(vocabulary, formulas, [&](TermId t, bool) { any = any || vocabulary.arena().IsOpen(t); });
   return any;
 }
 

@@ -40,9 +40,7 @@ void Compiler::Fold(ExprId id, const lang::Expr& e) {
     Emit(Op::kSetFrame, next, width);
     Emit(Op::kFrame, value, width);
     Emit(Op::kFrame, next, width);
-    Emit(width > 1                            ? Op::kAddPos
-         : types.Is(type, TypeKind::kInt) ? Op::kAddInt
-                                          : Op::kAddFloat);
+    Emit(width > 1 ? Op::kAddPos : types.Is(type, TypeKind::kInt) ? Op::kAddInt : Op::kAddFloat);
     Emit(Op::kSetFrame, value, width);
   } else {
     Emit(Op::kSetFrame, next, 1);
