@@ -189,22 +189,32 @@ TypeId Checker::CallMethod(ExprId id, const lang::Expr& e) {
   auto& types = model_.types;
   const lang::Expr& callee = exprs_[e.args[0]];
   const TypeId list = Expr(callee.args[0]);
-  if (callee.text != "remove" && callee.text != "append" && callee.text != "add") {
-    diagnostics_
-        .Report(Kind::kKoordNotCallable, callee.span, fmt::format("there is no method `{}`", callee.text))
-        .Help("lists have `append` and `remove`");
+  static const std::map<std::string, Builtin> kMethods{
+      {"append", Builtin::kAppend}, {"add", Builtin::kAppend},  {"push", Builtin::kAppend},
+      {"remove", Builtin::kRemove}, {"clear", Builtin::kClear}, {"contains", Builtin::kContains},
+      {"front", Builtin::kFront}};
+  const auto method = kMethods.find(callee.text);
+  if (method == kMethods.end()) {
+    auto& report = diagnostics_.Report(Kind::kKoordNotCallable, callee.span,
+                                       fmt::format("there is no method `{}`", callee.text));
+    report.Help(callee.text == "pop"
+                    ? "write `x = q.front()` and then `q.remove(x)`"
+                    : "lists have `append` (or `push`), `remove`, `clear`, `contains` and `front`");
     for (size_t i = 1; i < e.args.size(); ++i) Expr(e.args[i]);
     return types.error();
   }
-  Set(id, RefKind::kBuiltin,
-      static_cast<size_t>(callee.text == "remove" ? Builtin::kRemove : Builtin::kAppend));
-  if (!Arity(e, 1, 1, callee.text)) return types.error();
+  const Builtin builtin = method->second;
+  Set(id, RefKind::kBuiltin, static_cast<size_t>(builtin));
+  const size_t arguments = builtin == Builtin::kClear || builtin == Builtin::kFront ? 0 : 1;
+  if (!Arity(e, arguments, arguments, callee.text)) return types.error();
   const TypeId element = types.FreshVariable();
   if (!types.Unify(list, types.List(element))) {
     return Mismatch(exprs_[callee.args[0]].span,
                     fmt::format("`{}` needs a list, not a `{}`", callee.text, types.Name(list)));
   }
-  NeedType(e.args[1], element, fmt::format("the argument of `{}`", callee.text));
+  if (arguments == 1) NeedType(e.args[1], element, fmt::format("the argument of `{}`", callee.text));
+  if (builtin == Builtin::kFront) return element;
+  if (builtin == Builtin::kContains) return types.boolean();
   return types.error();  // a statement, not a value
 }
 
@@ -311,6 +321,9 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
       return types.List(element);
     }
     case Builtin::kRemove:
+    case Builtin::kClear:
+    case Builtin::kContains:
+    case Builtin::kFront:
     case Builtin::kAppend:
       break;  // methods
   }

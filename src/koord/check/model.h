@@ -86,6 +86,9 @@ enum class Builtin : uint8_t {
   kMax,
   kRemove,
   kAppend,
+  kClear,
+  kContains,
+  kFront,  ///< the first item
   kOld,
   kRecord,  ///< `Order(1, p)`: a value of the record type that is the expression's
   kSqrt,

@@ -65,7 +65,7 @@ void Checker::Statement(const Stmt& stmt) {
       // l.remove(x) and l.append(x) write their list.
       if (model_.RefOf(stmt.value).kind == RefKind::kBuiltin) {
         const auto builtin = static_cast<Builtin>(model_.RefOf(stmt.value).index);
-        if (builtin == Builtin::kRemove || builtin == Builtin::kAppend) {
+        if (builtin == Builtin::kRemove || builtin == Builtin::kAppend || builtin == Builtin::kClear) {
           Target(exprs_[exprs_[stmt.value].args[0]].args[0]);
         }
       }

@@ -160,9 +160,20 @@ TermId Executor::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) 
       frame_.view = now;
       return result;
     }
+    case Builtin::kContains: {
+      const TermId list = Eval(exprs_[e.args[0]].args[0]);
+      return Contains(list, As(Eval(e.args[1]), arena_.sort(arena_.sort_of(list)).parts[0]));
+    }
+    case Builtin::kFront: {
+      const TermId list = Eval(exprs_[e.args[0]].args[0]);
+      const TermId first = arena_.IntNumber(0);
+      Check(CheckKind::kIndex, e.span, InRange(first, arena_.Length(list)));
+      return arena_.At(list, first);
+    }
     case Builtin::kRect:
     case Builtin::kGrid:
     case Builtin::kRemove:
+    case Builtin::kClear:
     case Builtin::kAppend:
       break;  // not values
   }

@@ -187,12 +187,14 @@ void Executor::Method(const Stmt& stmt) {
     return;  // the value of a function called as a statement is not used
   }
   const auto builtin = static_cast<Builtin>(ref.index);
-  if (builtin != Builtin::kRemove && builtin != Builtin::kAppend) {
+  if (builtin != Builtin::kRemove && builtin != Builtin::kAppend && builtin != Builtin::kClear) {
     for (size_t i = 1; i < call.args.size(); ++i) Eval(call.args[i]);
     return;
   }
   const ExprId target = exprs_[call.args[0]].args[0];
   const TermId list = Eval(target);
+  if (builtin == Builtin::kClear)
+    return Assign(target, arena_.MakeList(arena_.sort(arena_.sort_of(list)).parts[0], {}));
   const TermId element = As(Eval(call.args[1]), arena_.sort(arena_.sort_of(list)).parts[0]);
   if (builtin == Builtin::kAppend) return Assign(target, arena_.Append(list, element));
   const TermId k = arena_.FreshBound("k", arena_.Int());

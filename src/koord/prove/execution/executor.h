@@ -136,6 +136,7 @@ class Executor {
   TermId Binary(const lang::Expr& e);
   TermId Arithmetic(const lang::Expr& e);
   TermId Membership(const lang::Expr& e);
+  TermId Contains(TermId list, TermId element);
   /// Returns what `+` makes of two strings: to proofs only that it is a function matters.
   TermId Concatenate(TermId a, TermId b);
   TermId Quantifier(ExprId id, const lang::Expr& e);

@@ -145,7 +145,10 @@ TermId Executor::Membership(const lang::Expr& e) {
   }
   if (set.kind == ExprKind::kName && ref.kind == RefKind::kNone) return vocabulary_.IsRobot(a);  // ID
   const TermId list = Eval(e.args[1]);
-  const TermId element = As(a, arena_.sort(arena_.sort_of(list)).parts[0]);
+  return Contains(list, As(a, arena_.sort(arena_.sort_of(list)).parts[0]));
+}
+
+TermId Executor::Contains(TermId list, TermId element) {
   const TermId k = arena_.FreshBound("k", arena_.Int());
   return arena_.Exists({k}, arena_.And({arena_.Le(arena_.IntNumber(0), k), arena_.Lt(k, arena_.Length(list)),
                                         arena_.Eq(arena_.At(list, k), element)}));

@@ -194,7 +194,23 @@ void Compiler::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) {
       return;
     }
     case Builtin::kRect:
+    case Builtin::kContains: {
+      const ExprId list = exprs_[e.args[0]].args[0];
+      Gen(list);
+      GenAs(e.args[1], types[model_.TypeOf(list)].parts[0]);
+      Emit(Op::kListContains, Width(types[model_.TypeOf(list)].parts[0]));
+      return;
+    }
+    case Builtin::kFront: {
+      const ExprId list = exprs_[e.args[0]].args[0];
+      Gen(list);
+      Constant(0);
+      span_ = e.span;
+      Emit(Op::kListAt, Width(types[model_.TypeOf(list)].parts[0]));
+      return;
+    }
     case Builtin::kRemove:
+    case Builtin::kClear:
     case Builtin::kAppend:
       break;  // not values
   }

@@ -212,13 +212,17 @@ void Compiler::Method(const Stmt& stmt) {
   const Ref ref = model_.RefOf(stmt.value);
   const lang::Expr& call = exprs_[stmt.value];
   const auto builtin = ref.kind == RefKind::kBuiltin ? static_cast<Builtin>(ref.index) : Builtin::kPos;
-  if (builtin != Builtin::kRemove && builtin != Builtin::kAppend) {
+  if (builtin != Builtin::kRemove && builtin != Builtin::kAppend && builtin != Builtin::kClear) {
     Gen(stmt.value);
     Emit(Op::kPop, Width(model_.TypeOf(stmt.value)));
     return;
   }
   const ExprId target = exprs_[call.args[0]].args[0];
   const TypeId element = model_.types[model_.TypeOf(target)].parts[0];
+  if (builtin == Builtin::kClear) {
+    Emit(Op::kListMake, 0, Width(element));
+    return Assign(target);
+  }
   Gen(target);
   GenAs(call.args[1], element);
   span_ = stmt.span;
