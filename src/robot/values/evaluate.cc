@@ -146,6 +146,7 @@ Value Evaluator::Visit(const Expr& e, const Scope& scope) {
     case ExprKind::kList:
     case ExprKind::kQuantifier:
     case ExprKind::kConditional:
+    case ExprKind::kFold:
     case ExprKind::kAny:
       break;
   }

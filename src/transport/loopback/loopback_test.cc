@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "runtime/rounds/adder_test.h"
+#include "transport/conformance_test.h"
 
 namespace rondo::transport::loopback {
 namespace {
@@ -16,17 +17,15 @@ using namespace runtime::rounds;  // NOLINT: the words of the protocol
 
 constexpr Time kSecond = 1'000'000'000;
 
-TEST(Loopback, CarriesDatagramsToWhomTheyAreFor) {
-  Hub hub(3);
-  const auto a = hub.Connect(0), b = hub.Connect(1), c = hub.Connect(2);
-  a->Send(1, Bytes{1});
-  a->Send(kAll, Bytes{2});
-  EXPECT_EQ(b->Receive(b->Now() + kSecond), Bytes{1});
-  EXPECT_EQ(b->Receive(b->Now() + kSecond), Bytes{2});
-  EXPECT_EQ(c->Receive(c->Now() + kSecond), Bytes{2});
-  EXPECT_EQ(a->Receive(a->Now()), std::nullopt);
-  EXPECT_EQ(c->Receive(c->Now() - kSecond), std::nullopt);
-}
+struct Loopback {
+  std::vector<std::unique_ptr<Transport>> Connect(size_t robots) {
+    hub = std::make_unique<Hub>(robots);
+    std::vector<std::unique_ptr<Transport>> ways;
+    for (uint32_t r = 0; r < robots; ++r) ways.push_back(hub->Connect(r));
+    return ways;
+  }
+  std::unique_ptr<Hub> hub;
+};
 
 TEST(Loopback, TheOldestGiveWay) {
   Hub hub(2, 3);
@@ -74,3 +73,7 @@ TEST(Drive, AFleetOfThreadsAgrees) {
 
 }  // namespace
 }  // namespace rondo::transport::loopback
+
+namespace rondo::transport {
+INSTANTIATE_TYPED_TEST_SUITE_P(Loopback, TransportConformance, loopback::Loopback);
+}  // namespace rondo::transport
