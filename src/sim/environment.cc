@@ -103,7 +103,7 @@ bool Run::Pass(uint64_t n, double t, double now, bool last) {
   if (step_ % p.touch == 0 || last) Observe(now);
   if ((step_ % p.monitor == 0 || last) && settled_at_ >= 0) {
     Sense();
-    monitor_->During(now, state_, settled_);
+    monitor_->During(now, state_, settled_, last && networked_ == nullptr);
   }
   return true;
 }

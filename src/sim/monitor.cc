@@ -50,12 +50,14 @@ void Monitor::Initially(std::span<Word> state) {
   for (const FormulaCode& f : team_.invariants()) Formula(0, f, "invariant", Kind::kKoordViolated);
 }
 
-void Monitor::Settled(double time, std::span<Word> state) {
+void Monitor::Settled(double time, std::span<Word> state, bool between_rounds) {
   team_.machine().SetMemory(state.data());
-  for (const FormulaCode& f : team_.invariants()) Formula(time, f, "invariant", Kind::kKoordViolated);
+  for (const FormulaCode& f : team_.invariants()) {
+    if (!f.at_rounds || between_rounds) Formula(time, f, "invariant", Kind::kKoordViolated);
+  }
 }
 
-void Monitor::During(double time, std::span<Word> state, std::span<const Word> settled) {
+void Monitor::During(double time, std::span<Word> state, std::span<const Word> settled, bool between_rounds) {
   koord::semantics::Machine& machine = team_.machine();
   machine.SetMemory(state.data(), settled.data());
   for (const FormulaCode& f : team_.port_facts())
@@ -72,7 +74,7 @@ void Monitor::During(double time, std::span<Word> state, std::span<const Word> s
                Kind::kKoordAssumptionBroken);
     }
   }
-  Settled(time, state);
+  Settled(time, state, between_rounds);
 }
 
 void Monitor::Summary(double time) {

@@ -22,12 +22,14 @@ class Monitor {
   /// Checks the initial state, at t = 0: general assumptions, `assume initially`, what always holds of ports,
   /// and invariants.
   void Initially(std::span<koord::semantics::Word> state);
-  /// Checks the invariants at the end of a program transition; `time` in seconds.
-  void Settled(double time, std::span<koord::semantics::Word> state);
+  /// Checks the invariants at the end of a program transition; `time` in seconds. Those that have to hold between rounds only
+  /// wait for the end of the round.
+  void Settled(double time, std::span<koord::semantics::Word> state, bool between_rounds = false);
   /// Checks a moment of the environment's turn that began with `settled`: controller assumptions and
   /// invariants.
+  /// @param between_rounds  it is the last moment of the round.
   void During(double time, std::span<koord::semantics::Word> state,
-              std::span<const koord::semantics::Word> settled);
+              std::span<const koord::semantics::Word> settled, bool between_rounds);
   /// Notes the first call since the last check that returned what a summary excludes, if there was one.
   void Summary(double time);
 

@@ -59,6 +59,10 @@ void Run::Read(size_t robot, size_t variable, Heap& heap, std::span<Word> words)
 void Run::Contributed(size_t robot) { seen_[robot].clear(); }
 
 void Run::Committed(uint64_t round, const Node& node) {
+  if (settled_at_ >= 0) {
+    Sense();
+    monitor_->Settled(networked_->now(), state_, true);
+  }
   runtime::codec::Bytes bytes;
   node.Save(bytes);
   store_->Load(bytes);

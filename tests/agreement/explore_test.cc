@@ -55,7 +55,7 @@ class Texts {
     for (size_t e = 0; e < events; ++e) text += Event(e);
     const size_t invariants = 1 + Pick(2);
     for (size_t i = 0; i < invariants; ++i)
-      text += "invariant i" + std::to_string(i) + ": " + Invariant() + "\n";
+      text += "invariant i" + std::to_string(i) + (Pick(5) == 0 ? " at rounds: " : ": ") + Invariant() + "\n";
     if (sensor_ && Pick(2) == 0) text += "assume M.calm when M.power > 0 always M.near == old(M.near)\n";
     return text;
   }

@@ -35,11 +35,12 @@ Trouble System::TroubleOf(int property) const {
                                   : Trouble::kSummary;
 }
 
-int System::Violated(std::span<const Word> state) {
+int System::Violated(std::span<const Word> state, bool between_rounds) {
   // Formulas only read.
   team_.machine().SetMemory(const_cast<Word*>(state.data()));  // NOLINT
   for (size_t i = 0; i < team_.invariants().size(); ++i) {
     if (options_.only && *options_.only != i) continue;
+    if (team_.invariants()[i].at_rounds && !between_rounds) continue;
     bool defined = true;
     const bool holds = team_.Holds(team_.invariants()[i], nullptr, &defined);
     if (!defined)
@@ -83,7 +84,7 @@ bool System::Emit(std::span<const Word> state, Word phase, const explore::Visit&
     case Seen::kNew:
       break;
   }
-  const int violated = Violated(emitted_);
+  const int violated = Violated(emitted_, phase == 0);
   if (violated < 0) return true;
   broken = {violated, true};
   return false;
@@ -150,7 +151,7 @@ Broken System::Program(std::span<const Word> state, const explore::Visit& visit)
   const Word phase = team_.has_sensors() ? 1 : 0;
   const auto settled = [&](std::span<const Word> after, bool complete) {
     if (complete) return Emit(after, phase, visit, broken);
-    const int violated = Violated(after);
+    const int violated = Violated(after, false);
     if (violated < 0) return true;
     std::copy(after.begin(), after.end(), emitted_.begin());
     broken = {violated, false};
@@ -290,7 +291,7 @@ std::vector<Step> System::Explain(const std::vector<std::vector<Word>>& path, co
   if (TroubleOf(broken.property) == Trouble::kInvariant && phase == 0) {
     transition_.Prepare(here);
     const auto look = [&](std::span<const Word> after, bool) {
-      if (Violated(after) < 0) return true;
+      if (Violated(after, false) < 0) return true;
       std::copy(after.begin(), after.end(), emitted_.begin());
       step = Tell(false);
       told = true;

@@ -101,7 +101,7 @@ class System {
   /// Returns the words of a packed state.
   std::vector<Word> Unpack(std::span<const Word> packed) const;
   /// Returns the first invariant that is defined and does not hold in the state; -1 if there is none.
-  int Violated(std::span<const Word> state);
+  int Violated(std::span<const Word> state, bool between_rounds);
 
   /// Returns, by event, in how many expanded states some robot could run it.
   const std::vector<uint64_t>& enabled() const { return enabled_; }

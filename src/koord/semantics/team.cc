@@ -255,8 +255,11 @@ void Team::Specification(Compiler& compiler) {
     if (auto formula = CompileFormula(compiler, std::move(name), span, e))
       list.push_back(std::move(*formula));
   };
-  for (size_t i = 0; i < model_.invariants.size(); ++i)
+  for (size_t i = 0; i < model_.invariants.size(); ++i) {
+    const size_t before = invariants_.size();
     add(invariants_, InvariantName(model_, i), model_.invariants[i]->span, model_.invariants[i]->body);
+    if (invariants_.size() > before) invariants_.back().at_rounds = model_.invariants[i]->at_rounds;
+  }
   for (const AssumeDef* def : model_.assumptions) {
     const std::string name = AssumptionName(model_, *def);
     switch (def->kind) {

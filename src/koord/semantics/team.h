@@ -29,6 +29,7 @@ struct FormulaCode {
   diag::Span span;
   uint32_t entry;
   bool per_robot;
+  bool at_rounds = false;  ///< an invariant that has to hold between rounds only
 };
 /// Holds a controller assumption (the paper's (P, Q)): if `when` holds at the end of the program transition,
 /// `always` holds at every moment until the next round.

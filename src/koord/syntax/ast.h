@@ -162,7 +162,8 @@ struct SummaryDef {
 };
 /// Represents an invariant that is to be proved or checked.
 struct InvariantDef {
-  std::string name;  ///< may be empty
+  std::string name;        ///< may be empty
+  bool at_rounds = false;  ///< it has to hold between rounds only
   diag::Span span;
   ExprId body;
 };

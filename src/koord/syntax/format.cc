@@ -181,7 +181,9 @@ class Formatter {
         item.body);
   }
   void Print(const InvariantDef& item) {
-    Statement(item.span, item.name.empty() ? "invariant:" : fmt::format("invariant {}:", item.name),
+    Statement(item.span,
+              fmt::format("invariant{}{}:", item.name.empty() ? "" : " " + item.name,
+                          item.at_rounds ? " at rounds" : ""),
               item.body);
   }
   void Print(const PlatformDef& item) {

@@ -89,6 +89,7 @@ class Writer {
   }
   json operator()(const InvariantDef& i) const {
     json j = Named("invariant", i.name, i.span);
+    if (i.at_rounds) j["at_rounds"] = true;
     j["body"] = Ex(i.body);
     return j;
   }

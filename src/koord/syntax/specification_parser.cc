@@ -178,9 +178,17 @@ void Parser::ParseInvariant(Span start) {
   Take();
   InvariantDef def;
   def.span = start;
-  if (AtKind(TokenKind::kName) && Peek(1).text == ":") {
+  // An invariant may be called `at`.
+  const auto at_rounds = [&] { return At("at") && Peek(1).text == "rounds"; };
+  if (AtKind(TokenKind::kName) && !at_rounds() &&
+      (Peek(1).text == ":" || (Peek(1).text == "at" && Peek(2).text == "rounds"))) {
     def.span = Peek().span;
     def.name = ExpectName("the name of the invariant");
+  }
+  def.at_rounds = at_rounds();
+  if (def.at_rounds) {
+    Take();
+    Take();
   }
   if (Accept("{")) {
     def.body = ParseExpr();

@@ -86,7 +86,8 @@ Problem Problems::Undefined(size_t place, TermId undefined, TermId robot) {
     Append(assertions, theory_.DeclaredValues(init_->start()));
     Append(assertions, theory_.PortFacts(init_->start()));
   } else if (place < columns() || place == specification(Part::kInvariants) || place >= fallback(0)) {
-    Append(assertions, Everything(round_.start()));
+    // Formulas have values at each moment, and fallbacks run at any.
+    Append(assertions, Everything(round_.start(), place < columns()));
   } else if (place == specification(Part::kInitial)) {
     Append(assertions, theory_.DeclaredValues(round_.start()));
     Append(assertions, theory_.Initially(round_.start()));

@@ -57,10 +57,10 @@ TermId Problems::Refute(TermId goal) {
   }
 }
 
-const std::vector<Assertion>& Problems::Everything(const View& view) {
-  std::vector<Assertion>& result = everything_[view.stopped];
+const std::vector<Assertion>& Problems::Everything(const View& view, bool between_rounds) {
+  std::vector<Assertion>& result = everything_[{view.stopped, between_rounds}];
   if (result.empty()) {
-    result = theory_.Invariants(view);
+    result = theory_.Invariants(view, between_rounds);
     Append(result, theory_.PortFacts(view));
   }
   return result;
@@ -208,7 +208,7 @@ Problem Problems::WithWitnesses(TermId refuted,
 Problem Problems::Step(size_t invariant, std::optional<size_t> action, bool reachable) {
   const TermId refuted = Refute(theory_.Invariant(invariant, round_.end()));
   return WithWitnesses(refuted, [&](const std::vector<TermId>& others) {
-    return StepFor(round_, refuted, others, action, reachable);
+    return StepFor(round_, refuted, others, action, reachable, model_.invariants[invariant]->at_rounds);
   });
 }
 
@@ -224,7 +224,7 @@ Problem Problems::CutOff(size_t invariant, std::optional<size_t> action, CutOffL
   Round& round = cut_off(leaves_out);
   const TermId refuted = Refute(theory_.Invariant(invariant, round.end()));
   return WithWitnesses(refuted, [&](const std::vector<TermId>& others) {
-    return StepFor(round, refuted, others, action, reachable);
+    return StepFor(round, refuted, others, action, reachable, model_.invariants[invariant]->at_rounds);
   });
 }
 
@@ -261,9 +261,10 @@ std::vector<TermId> Problems::Witnesses(const Problem& problem) {
 }
 
 Problem Problems::StepFor(Round& round, TermId refuted, const std::vector<TermId>& others,
-                          std::optional<size_t> action, bool reachable) {
+                          std::optional<size_t> action, bool reachable, bool at_rounds) {
   std::vector<Assertion> assertions{{refuted, ""}};
   Append(assertions, round.Relate(refuted, Everyone(), others));
+  if (at_rounds) assertions.push_back({round.moved(), ""});  // the round is over
   const std::vector<TermId> participants = round.participants();
   if (action) assertions.push_back({First(round, *action), ""});
   if (options_.expand) assertions.push_back({Succeeds(round), ""});
@@ -273,7 +274,7 @@ Problem Problems::StepFor(Round& round, TermId refuted, const std::vector<TermId
     for (const Assertion& p : promises)
       assertions.push_back({arena_.Implies(vocabulary_.IsRobot(r), p.formula), p.group});
   }
-  Append(assertions, Everything(round.start()));
+  Append(assertions, Everything(round.start(), true));
   for (const View& moment : round.moments()) Append(assertions, theory_.PortFacts(moment));
   if (reachable) {
     Append(assertions, theory_.DeclaredValues(round.start()));
@@ -285,8 +286,11 @@ Problem Problems::StepFor(Round& round, TermId refuted, const std::vector<TermId
 Problem Problems::Follows(size_t invariant, const std::vector<size_t>& premises) {
   const View& view = round_.start();
   std::vector<Assertion> assertions{{Refute(theory_.Invariant(invariant, view)), ""}};
-  for (const size_t p : premises)
+  for (const size_t p : premises) {
+    // What holds between rounds only is no reason for what holds at each moment.
+    if (model_.invariants[p]->at_rounds && !model_.invariants[invariant]->at_rounds) continue;
     assertions.push_back({theory_.Invariant(p, view), "invariant " + InvariantName(model_, p)});
+  }
   Append(assertions, theory_.PortFacts(view));
   return Ground(std::move(assertions), Everyone());
 }

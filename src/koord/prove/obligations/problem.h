@@ -106,14 +106,14 @@ class Problems {
   Vocabulary& vocabulary() { return vocabulary_; }
 
  private:
-  const std::vector<solve::Assertion>& Everything(const View& view);
+  const std::vector<solve::Assertion>& Everything(const View& view, bool between_rounds);
   std::vector<TermId> Everyone();
   void Instantiate(Problem& problem);
   void AddDistances(Problem& problem);
   Problem WithWitnesses(TermId refuted, const std::function<Problem(const std::vector<TermId>&)>& state);
   Problem InitiallyFor(TermId refuted, const std::vector<TermId>& others);
   Problem StepFor(Round& round, TermId refuted, const std::vector<TermId>& others,
-                  std::optional<size_t> action, bool reachable);
+                  std::optional<size_t> action, bool reachable, bool at_rounds);
   std::vector<TermId> Witnesses(const Problem& problem);
   TermId Succeeds(Round& round);
   TermId First(Round& round, size_t action);
@@ -133,7 +133,8 @@ class Problems {
   std::optional<Round> init_;
   std::map<std::pair<bool, bool>, Round> cut_offs_;  // by their limits
   TermId robot_;
-  std::map<TermId, std::vector<solve::Assertion>> everything_;  // by the array `stopped` of the view
+  // By the array `stopped` of the view, and whether it is between rounds.
+  std::map<std::pair<TermId, bool>, std::vector<solve::Assertion>> everything_;
   std::map<std::pair<const Round*, TermId>, std::vector<solve::Assertion>> promises_;  // by robot
   std::vector<solve::Assertion> background_;
   std::optional<Extremes> extremes_;

@@ -37,10 +37,12 @@ TermId Theory::PerRobot(ExprId e, const View& view) {
 
 TermId Theory::Invariant(size_t i, const View& view) { return PerRobot(model_.invariants[i]->body, view); }
 
-std::vector<Assertion> Theory::Invariants(const View& view) {
+std::vector<Assertion> Theory::Invariants(const View& view, bool between_rounds) {
   std::vector<Assertion> result;
-  for (size_t i = 0; i < invariants(); ++i)
+  for (size_t i = 0; i < invariants(); ++i) {
+    if (model_.invariants[i]->at_rounds && !between_rounds) continue;
     result.push_back({Invariant(i, view), "invariant " + InvariantName(model_, i)});
+  }
   return result;
 }
 

@@ -53,8 +53,9 @@ class Theory {
   size_t invariants() const { return model_.invariants.size(); }
   /// Returns invariant `i` at `view`, for every robot if it is about robots.
   TermId Invariant(size_t i, const View& view);
-  /// Returns all invariants at `view`, each in its group `invariant NAME`.
-  std::vector<solve::Assertion> Invariants(const View& view);
+  /// Returns all invariants at `view`, each in its group `invariant NAME`; at any moment without those that hold between
+  /// rounds only.
+  std::vector<solve::Assertion> Invariants(const View& view, bool between_rounds);
 
   /// Returns the number of the function that a summary is about.
   size_t FunctionOf(const SummaryDef& def) const;

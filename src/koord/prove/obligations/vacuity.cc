@@ -53,7 +53,7 @@ Problem Problems::SomeValues(size_t action) {
 Problem Problems::SomeEnabled(size_t action) {
   std::vector<Assertion> assertions{{vocabulary_.IsRobot(robot_), ""},
                                     {round_.EffectOf(action, robot_).enabled, ""}};
-  Append(assertions, Everything(round_.start()));
+  Append(assertions, Everything(round_.start(), true));
   return Ground(std::move(assertions), {});
 }
 
@@ -81,7 +81,7 @@ Problem Problems::PromiseNow(size_t p) {
   const Theory::Promise promise = theory_.Promises(round_.start(), round_.start(), robot_)[p];
   std::vector<Assertion> assertions{
       {vocabulary_.IsRobot(robot_), ""}, {promise.condition, ""}, {arena_.Not(promise.promise), ""}};
-  Append(assertions, Everything(round_.start()));
+  Append(assertions, Everything(round_.start(), false));
   return Ground(std::move(assertions), {});
 }
 
