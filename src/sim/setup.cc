@@ -19,9 +19,13 @@ std::optional<std::vector<Word>> Run::ValueOf(const std::string& name, const Fle
   auto words =
       koord::semantics::FromJson(model_.types, team_->heap(), model_.variables[variable].type, given.value);
   if (!words) {
-    diagnostics_.Report(
+    auto& report = diagnostics_.Report(
         Kind::kFleetValue, given.span,
         fmt::format("`{}` must be a `{}`", name, model_.types.Name(model_.variables[variable].type)));
+    if (model_.variables[variable].PerRobot())
+      report.Help(fmt::format(
+          "or a value for each of the {} robots: a list in their order, or a table of their names",
+          fleet_.robots.size()));
   }
   return words;
 }
@@ -45,7 +49,11 @@ bool Run::IsForEach(const FleetValue& given, size_t variable) const {
 void Run::ForEach(const std::string& name, const FleetValue& given, size_t variable) {
   for (size_t r = 0; r < fleet_.robots.size(); ++r) {
     const std::string& robot = fleet_.robots[r].name;
-    if (given.value.is_object() && !given.value.contains(robot)) continue;
+    if (given.value.is_object() && !given.value.contains(robot)) {
+      diagnostics_.Report(Kind::kFleetValue, given.span,
+                          fmt::format("`{}` has no value for `{}`", name, robot));
+      return;
+    }
     FleetValue one = given;
     one.value = given.value.is_object() ? given.value[robot] : given.value[r];
     const auto words = ValueOf(fmt::format("{} of {}", name, robot), one, variable);

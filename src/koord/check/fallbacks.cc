@@ -67,6 +67,14 @@ void Checker::CheckFallback(const FallbackDef& def) {
       report.Help(fmt::format("did you mean `{}`?", near)).Fix(def.span, near);
     return;
   }
+  const bool acts = std::ranges::any_of(model_.variables, [&](const Variable& v) {
+    return v.module == def.module && v.kind == VariableKind::kActuator;
+  });
+  if (!acts) {
+    diagnostics_.Report(Kind::kKoordFallback, def.span, fmt::format("`{}` has no actuators", def.module))
+        .Under("there is nothing to set");
+    return;
+  }
   const size_t before = diagnostics_.errors();
   place_ = Place::kEvent;
   fallback_ = def.module;

@@ -21,6 +21,10 @@ int Checker::FindVariable(const std::string& name) const {
 
 void Checker::Undeclared(const std::string& name, Span span) {
   auto& report = diagnostics_.Report(Kind::kKoordUndeclared, span, fmt::format("`{}` is not declared", name));
+  if (name == "stopped") {
+    report.Help("only specifications know who has stopped: `stopped[i]`");
+    return;
+  }
   std::vector<std::string> known;
   for (const Variable& v : model_.variables) known.push_back(v.name);
   for (const uint32_t b : scope_) known.push_back(model_.bindings[b].name);

@@ -14,6 +14,19 @@ bool HasUrgent(const Model& model) {
   return std::ranges::any_of(model.events, [](const EventDef* e) { return e->urgent; });
 }
 
+// Do these statements write actuators?
+bool Acts(const Model& model, const std::vector<Stmt>& body) {
+  return std::ranges::any_of(body, [&](const Stmt& s) {
+    ExprId root = s.target;
+    while (root.valid() && model.RefOf(root).kind != RefKind::kVariable &&
+           !model.program->exprs[root].args.empty())
+      root = model.program->exprs[root].args[0];
+    const bool writes = root.valid() && model.RefOf(root).kind == RefKind::kVariable &&
+                        model.variables[model.RefOf(root).index].kind == VariableKind::kActuator;
+    return writes || s.kind == StmtKind::kCall || Acts(model, s.body) || Acts(model, s.orelse);
+  });
+}
+
 class CutOffProof {
  public:
   CutOffProof(Problems& problems, const SolveTasks& solve)
@@ -93,13 +106,22 @@ std::vector<std::string> AssumedOfCutOff(const Model& model, const std::vector<T
   const auto any = [&](auto limit) {
     return proved.empty() || std::ranges::any_of(proved, [&](const Task& t) { return t.limits.*limit; });
   };
-  const bool acts = std::ranges::any_of(model.variables,
-                                        [](const Variable& v) { return v.kind == VariableKind::kActuator; });
+  std::set<std::string> without;  // modules
+  for (size_t v = 0; v < model.variables.size(); ++v) {
+    if (model.variables[v].kind == VariableKind::kActuator && !model.FallsBack(v))
+      without.insert(model.variables[v].module);
+  }
   std::vector<std::string> assumed;
-  if (acts && any(&CutOffLimits::acts_at_once))
-    assumed.push_back(proved.empty()
-                          ? "robots act as a round begins, and lose nobody (there is no `fallback`)"
-                          : "robots act as a round begins, or fall back");
+  if (!without.empty())
+    assumed.push_back(
+        fmt::format("robots act as a round begins, and lose nobody (there is no `fallback` of {})",
+                    fmt::join(without, ", ")));
+  if (!proved.empty() && any(&CutOffLimits::acts_at_once))
+    assumed.push_back("robots act as a round begins, or fall back");
+  const bool begins =
+      std::ranges::any_of(model.inits, [&](const InitDef* init) { return Acts(model, init->body); });
+  if (!proved.empty() && begins)
+    assumed.push_back("robots act on what `init` says before anything else happens");
   if (HasUrgent(model) && any(&CutOffLimits::runs_urgent))
     assumed.push_back("no robot that has an urgent event to run is cut off");
   return assumed;

@@ -38,14 +38,16 @@ const char* Describe(CheckKind kind) {
   return "";
 }
 
-// Does an invariant count or sum up robots?
-bool Counts(const Model& model) {
+// Does the invariant that stands there count or sum up robots?
+bool Counts(const Model& model, Span where) {
   const std::function<bool(ExprId)> in = [&](ExprId id) {
     const lang::Expr& e = model.program->exprs[id];
     if (e.kind == lang::ExprKind::kFold && (e.text == "sum" || e.text == "count")) return true;
     return std::ranges::any_of(e.args, in);
   };
-  return std::ranges::any_of(model.invariants, [&](const InvariantDef* def) { return in(def->body); });
+  return std::ranges::any_of(model.invariants, [&](const InvariantDef* def) {
+    return model.program->exprs[def->body].span == where && in(def->body);
+  });
 }
 
 }  // namespace
@@ -290,9 +292,9 @@ void Reporter::Undecided(Row& row, const Cell& cell, Span span, const Witness* c
     report.Help("state more of what the functions and ports guarantee, if this cannot happen");
   } else {
     report.Note(fmt::format("{}: {}", options_.solver->name(), cell.reason));
-    if (!options_.robots && Counts(model_))
+    if (!options_.robots && Counts(model_, span))
       report.Note(
-          "for every N, nothing is known of `sum` over robots, and of `count` whether it is 0, 1, more, or all");
+          "for every N, of `sum` over robots nothing is known, and of `count` only whether it is 0, 1, more, or all");
     // More time helps where time was short; a number, where there is none yet.
     const std::string_view robots = "fix the number of robots (`--robots 3`)";
     if (!options_.robots) {

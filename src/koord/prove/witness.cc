@@ -200,7 +200,7 @@ class Storyteller {
         const Variable& variable = model_.variables[v];
         if (variable.kind == VariableKind::kParam || variable.kind == VariableKind::kSensor ||
             variable.kind == VariableKind::kAllwrite || variable.function >= 0 ||
-            (of_ == WitnessOf::kCutOff && variable.kind == VariableKind::kActuator) ||
+            (of_ == WitnessOf::kCutOff && model_.FallsBack(v)) ||
             model_.types.Is(variable.type, lang::TypeKind::kArray)) {
           continue;
         }
@@ -218,7 +218,7 @@ class Storyteller {
   void ForEachPort(const std::function<void(size_t)>& visit) const {
     for (size_t v = 0; v < model_.variables.size(); ++v) {
       const Variable& variable = model_.variables[v];
-      const bool port = variable.kind == VariableKind::kSensor || variable.kind == VariableKind::kActuator;
+      const bool port = variable.kind == VariableKind::kSensor || model_.FallsBack(v);
       if (port && variable.function < 0 && !model_.types.Is(variable.type, lang::TypeKind::kArray)) visit(v);
     }
   }

@@ -234,6 +234,12 @@ class Replay {
   WitnessReplay CutOff() {
     sensors_ = Ports(VariableKind::kSensor);
     actuators_ = Ports(VariableKind::kActuator);
+    for (size_t v = 0; v < model_.variables.size(); ++v) {
+      if (model_.variables[v].kind != VariableKind::kActuator || model_.FallsBack(v)) continue;
+      // Without a fallback it gets what events write at once.
+      for (size_t r = 0; r < team_->robots(); ++r)
+        std::fill_n(actuators_.begin() + team_->layout().Address(v, r), team_->layout()[v].words(), false);
+    }
     semantics::ProgramTransition transition(*team_);
     transition.Prepare(start_);
     std::vector<Word> agreed;

@@ -227,7 +227,7 @@ TermId Executor::Filled(TermId whole, TypeId type, TermId value) {
   if (!model_.types.Is(type, lang::TypeKind::kArray)) return arena_.Eq(whole, value);
   const TypeId item = model_.types[type].parts[0];
   const TermId length = ArrayLength(type);
-  constexpr int64_t kSpelledOut = 64;
+  constexpr int64_t kSpelledOut = 256;
   if (const auto count = ConstantInt(length); count && *count <= kSpelledOut) {
     std::vector<TermId> parts;
     for (int64_t i = 0; i < *count; ++i)

@@ -49,8 +49,8 @@ void Round::CanBeCutOff(Executor& executor) {
   const View then = vocabulary_.MakeView(" then");
   then_ = settled_;
   for (size_t v = 0; v < model_.variables.size(); ++v) {
-    const VariableKind kind = model_.variables[v].kind;
-    if (kind == VariableKind::kSensor || kind == VariableKind::kActuator) then_.value[v] = then.value[v];
+    if (model_.variables[v].kind == VariableKind::kSensor || model_.FallsBack(v))
+      then_.value[v] = then.value[v];
   }
   const auto predicate = [&](const char* name) {
     return arena_.Declare(name, {arena_.Int()}, arena_.Bool());
@@ -68,14 +68,12 @@ void Round::CanBeCutOff(Executor& executor) {
   }
 }
 
-// What an actuator of a robot is at the end, if its event leaves `acted` to it.
+// What an actuator with a fallback is at the end, if the robot's event leaves `acted` to it.
 TermId Round::ActuatorOf(size_t v, TermId r, TermId acted) {
   const TermId before = arena_.Select(start_.value[v], r);
   const TermId then = arena_.Select(then_.value[v], r);
   const TermId after = arena_.Select(end_.value[v], r);
-  const auto it = fallback_.find(v);
-  const TermId fallback =
-      it == fallback_.end() ? then : Substitute(arena_, it->second, expr::Substitution{{self_, r}});
+  const TermId fallback = Substitute(arena_, fallback_.at(v), expr::Substitution{{self_, r}});
   return arena_.And(
       arena_.Eq(then, arena_.Ite(Waits(r), before, acted)),
       arena_.Eq(after, arena_.Ite(Changes(r), arena_.Ite(FallsBack(r), fallback, acted), then)));
@@ -98,7 +96,7 @@ std::vector<Round::Leg> Round::Legs(TermId r) {
   View first = settled_;
   View second = then_;
   for (size_t v = 0; v < model_.variables.size(); ++v) {
-    if (model_.variables[v].kind != VariableKind::kActuator) continue;
+    if (!model_.FallsBack(v)) continue;
     first.value[v] = then_.value[v];
     second.value[v] = end_.value[v];
   }
@@ -241,7 +239,7 @@ TermId Round::StateOf(TermId r) {
     }
     const TermId acted = ByAction(
         r, [&](const Effect& e) { return e.value[v]; }, before);
-    const bool apart = kind_ == Kind::kCutOff && variable.kind == VariableKind::kActuator;
+    const bool apart = kind_ == Kind::kCutOff && model_.FallsBack(v);
     facts.push_back(apart ? ActuatorOf(v, r, acted) : arena_.Eq(after, acted));
   }
   const TermId stopped = arena_.Select(start_.stopped, r);
@@ -283,8 +281,7 @@ TermId Round::MayChange(TermId r) {
   std::vector<TermId> late{arena_.Not(Changes(r)), FallsBack(r)};
   for (size_t a = 1; a < actions_.size() && !limits_.acts_at_once; ++a) {
     const auto writes = [&](size_t v) {
-      return model_.variables[v].kind == VariableKind::kActuator &&
-             effects_[a].value[v] != arena_.Select(start_.value[v], self_);
+      return model_.FallsBack(v) && effects_[a].value[v] != arena_.Select(start_.value[v], self_);
     };
     bool any = false;
     for (size_t v = 0; v < model_.variables.size(); ++v) any = any || writes(v);

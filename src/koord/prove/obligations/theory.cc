@@ -145,6 +145,10 @@ std::vector<Assertion> Theory::Background() {
     if (variable.kind != VariableKind::kParam || !variable.initial.valid()) continue;
     result.push_back({executor_.HasInitialValue(v, parameters.value[v], parameters, {}), ""});
   }
+  // An array has at least one item.
+  for (const auto& [_, length] : model_.lengths)
+    result.push_back(
+        {arena_.Le(arena_.IntNumber(1), executor_.Specification(length, parameters, {}, nullptr, {})), ""});
   for (const TermId axiom : vocabulary_.Axioms()) result.push_back({axiom, ""});
   return result;
 }
