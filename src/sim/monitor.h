@@ -29,7 +29,7 @@ class Monitor {
   /// invariants.
   /// @param between_rounds  it is the last moment of the round.
   void During(double time, std::span<koord::semantics::Word> state,
-              std::span<const koord::semantics::Word> settled, bool between_rounds);
+              std::span<const koord::semantics::Word> settled, bool between_rounds = true);
   /// Notes the first call since the last check that returned what a summary excludes, if there was one.
   void Summary(double time);
 

@@ -219,8 +219,8 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
   if (!witness.reachable)
     report.Note(
         "this state may be unreachable: the induction could not exclude it; `rondo prove --reach 6` looks for a run to it");
-  const bool promised = std::ranges::any_of(
-      model_.assumptions, [](const AssumeDef* def) { return def->kind == AssumeKind::kPort; });
+  const bool promised = std::ranges::any_of(model_.assumptions,
+                                            [](const AssumeDef* a) { return a->kind == AssumeKind::kPort; });
   if (witness.environment && promised && !witness.reachable) {
     report.Help(
         "add an invariant that excludes the state at the start of this round, or say more of what the controller\n"
