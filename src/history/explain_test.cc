@@ -120,7 +120,7 @@ TEST(Image, AStateComesBackInAnotherHeap) {
 
 TEST(Explain, WhatAFallbackSetBecomesPartOfTheState) {
   koord::node::Compiled program(
-      "using M:\n    sensors:\n        int at\n    actuators:\n        int to\n        int free\n"
+      "using M:\n    sensors:\n        int at\n    actuators:\n        int to\n"
       "using Lamp:\n    actuators:\n        int color\n"
       "Go:\n    pre: M.at == 1\n    eff:\n        M.to = 5\n"
       "fallback M:\n    to = at\n");
