@@ -5,8 +5,6 @@
 
 namespace rondo::koord {
 
-using expr::Rational;
-
 namespace {
 
 constexpr int64_t kMostSpelledOut = 64;
