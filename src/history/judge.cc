@@ -7,6 +7,7 @@
 #include <set>
 
 #include "history/explain.h"
+#include "koord/semantics/fallback.h"
 
 namespace rondo::history {
 
@@ -73,11 +74,7 @@ class Check {
     const std::vector<Word> seen = StateOf(team_, record_.images[e.what]);
     if (seen.empty()) return Say(Wrong::kUnreadable, "an image is none of this program's");
     std::vector<Word> again = seen;
-    koord::semantics::Machine& machine = team_.machine();
-    machine.SetMemory(again.data());
-    for (const auto& code : team_.fallbacks()) {
-      if (!machine.Run(code.body, e.robot, false)) machine.Undo();
-    }
+    koord::semantics::FallBack(team_, again, e.robot);
     if (again != seen)
       Say(Wrong::kNoFallback, Of(e) + " has lost the others and does not do what its fallback says");
     fallen_[e.robot] = e.what;

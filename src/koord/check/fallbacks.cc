@@ -4,6 +4,7 @@
 #include <set>
 
 #include "koord/check/checker.h"
+#include "koord/check/targets.h"
 #include "lang/suggest.h"
 
 namespace rondo::koord {
@@ -123,9 +124,7 @@ void Checker::RestrictFallback(const FallbackDef& def, const std::vector<Stmt>& 
     }
     if (stmt.target.valid()) {
       const Ref ref = model_.RefOf(stmt.target);
-      ExprId root = stmt.target;
-      while (model_.RefOf(root).kind != RefKind::kVariable && !exprs_[root].args.empty())
-        root = exprs_[root].args[0];
+      const ExprId root = RootOf(model_, stmt.target);
       const Ref target = model_.RefOf(root);
       const bool local = ref.kind == RefKind::kBinding || target.kind == RefKind::kBinding;
       const bool own = target.kind == RefKind::kVariable &&

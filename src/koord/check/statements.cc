@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "koord/check/checker.h"
+#include "koord/check/targets.h"
 
 namespace rondo::koord {
 
@@ -65,7 +66,7 @@ void Checker::Statement(const Stmt& stmt) {
       // l.remove(x) and l.append(x) write their list.
       if (model_.RefOf(stmt.value).kind == RefKind::kBuiltin) {
         const auto builtin = static_cast<Builtin>(model_.RefOf(stmt.value).index);
-        if (builtin == Builtin::kRemove || builtin == Builtin::kAppend || builtin == Builtin::kClear) {
+        if (WritesList(builtin)) {
           Target(exprs_[exprs_[stmt.value].args[0]].args[0]);
         }
       }

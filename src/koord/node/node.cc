@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/mixed.h"
+#include "koord/semantics/fallback.h"
 #include "runtime/rounds/merge.h"
 
 namespace rondo::koord::node {
@@ -47,11 +48,7 @@ const std::vector<Cell>& Node::FallBack(uint64_t round) {
       sensors_->Read(robot_, round, cell,
                      std::span(seen).subspan(cells_.Address(cell, robot_), cells_.Width(cell)));
   }
-  semantics::Machine& machine = team_.machine();
-  machine.SetMemory(seen.data());
-  for (const semantics::EventCode& code : team_.fallbacks()) {
-    if (!machine.Run(code.body, robot_, false)) machine.Undo();
-  }
+  semantics::FallBack(team_, seen, robot_);
   commands_.FallBack(std::move(seen));
   return commands_.covered();
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "koord/check/spec_labels.h"
+#include "koord/check/targets.h"
 
 namespace rondo::koord {
 namespace {
@@ -17,12 +18,9 @@ bool HasUrgent(const Model& model) {
 // Do these statements write actuators?
 bool Acts(const Model& model, const std::vector<Stmt>& body) {
   return std::ranges::any_of(body, [&](const Stmt& s) {
-    ExprId root = s.target;
-    while (root.valid() && model.RefOf(root).kind != RefKind::kVariable &&
-           !model.program->exprs[root].args.empty())
-      root = model.program->exprs[root].args[0];
-    const bool writes = root.valid() && model.RefOf(root).kind == RefKind::kVariable &&
-                        model.variables[model.RefOf(root).index].kind == VariableKind::kActuator;
+    const Ref root = s.target.valid() ? model.RefOf(RootOf(model, s.target)) : Ref();
+    const bool writes =
+        root.kind == RefKind::kVariable && model.variables[root.index].kind == VariableKind::kActuator;
     return writes || s.kind == StmtKind::kCall || Acts(model, s.body) || Acts(model, s.orelse);
   });
 }

@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "koord/semantics/environment.h"
+#include "koord/semantics/fallback.h"
 #include "koord/semantics/program_transition.h"
 
 namespace rondo::koord {
@@ -267,10 +268,7 @@ class Replay {
     std::vector<Word> fallen = then_;
     if (how.change && how.fall_back) {
       last = first;
-      team_->machine().SetMemory(fallen.data());
-      for (const semantics::EventCode& code : team_->fallbacks()) {
-        if (!team_->machine().Run(code.body, r, false)) return "a fallback has no value";
-      }
+      if (!semantics::FallBack(*team_, fallen, r)) return "a fallback has no value";
       for (const FallbackDef* def : model_.fallbacks) TakeOver(r, *def, fallen, last);
     }
     if (!Same(r, actuators_, last, end_)) return "an actuator has another value at the end";

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "base/check.h"
+#include "koord/check/targets.h"
 #include "koord/prove/execution/executor.h"
 
 namespace rondo::koord {
@@ -187,7 +188,7 @@ void Executor::Method(const Stmt& stmt) {
     return;  // the value of a function called as a statement is not used
   }
   const auto builtin = static_cast<Builtin>(ref.index);
-  if (builtin != Builtin::kRemove && builtin != Builtin::kAppend && builtin != Builtin::kClear) {
+  if (!WritesList(builtin)) {
     for (size_t i = 1; i < call.args.size(); ++i) Eval(call.args[i]);
     return;
   }

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "koord/check/targets.h"
 #include "koord/semantics/compile/compiler.h"
 
 namespace rondo::koord::semantics {
@@ -212,7 +213,7 @@ void Compiler::Method(const Stmt& stmt) {
   const Ref ref = model_.RefOf(stmt.value);
   const lang::Expr& call = exprs_[stmt.value];
   const auto builtin = ref.kind == RefKind::kBuiltin ? static_cast<Builtin>(ref.index) : Builtin::kPos;
-  if (builtin != Builtin::kRemove && builtin != Builtin::kAppend && builtin != Builtin::kClear) {
+  if (!WritesList(builtin)) {
     Gen(stmt.value);
     Emit(Op::kPop, Width(model_.TypeOf(stmt.value)));
     return;
