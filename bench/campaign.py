@@ -30,12 +30,12 @@ def campaign(rondo, *args, fault=None):
 
 
 def speed(rondo):
-    print("| program | N | rounds | datagrams per robot and round | virtual s / s (each run twice, and judged) | longest recovery |\n| --- | --- | --- | --- | --- | --- |")
+    print("| program | N | rounds | datagrams per robot and round | virtual s / s (each run twice, and judged) | rounds judged / s | longest recovery |\n| --- | --- | --- | --- | --- | --- | --- |")
     for program in (PROGRAM, "examples/koord/mutex", "examples/koord/lineform", "examples/koord/delivery"):
         for robots in (2, 4, 7):
             out = campaign(rondo, program, "--robots", robots, "--runs", 200)
             each = out["datagrams"] / out["rounds"] / robots
-            print(f"| {pathlib.Path(program).stem} | {robots} | {out['rounds']} | {each:.1f} | {2 * out['virtual_seconds'] / out['seconds']:.0f} | {out['longest_recovery']:.3f} s |")
+            print(f"| {pathlib.Path(program).stem} | {robots} | {out['rounds']} | {each:.1f} | {2 * out['virtual_seconds'] / out['seconds']:.0f} | {out['rounds'] / out['judging_seconds']:.0f} | {out['longest_recovery']:.3f} s |")
 
 
 def mutants(runs):

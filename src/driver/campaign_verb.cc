@@ -3,19 +3,21 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/counted.h"
 #include "base/file.h"
 #include "driver/command.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
+#include "runs/campaign_teams.h"
+#include "runs/campaign_trace.h"
 #include "runs/simulation_files.h"
-#include "sim/campaign/any_functions.h"
 #include "sim/campaign/campaign.h"
 #include "sim/campaign/scenario_file.h"
 #include "sim/cores/cores.h"
-#include "sim/parameters.h"
 #include "workspace/koord_files.h"
 
 namespace rondo::driver {
@@ -36,31 +38,8 @@ struct Options {
   std::vector<size_t> robots;
   std::string scenarios;
   std::string save;
+  std::string logs;
   bool json = false;
-};
-
-// Compiles teams for campaigns: parameters from the fleet, external functions that give anything.
-class Teams {
- public:
-  Teams(const koord::Model& model, const sim::Fleet& fleet) : model_(model), fleet_(fleet) {}
-
-  std::unique_ptr<koord::semantics::Team> Make(size_t robots, diag::Diagnostics& diagnostics) {
-    koord::semantics::TeamOptions options;
-    options.robots = robots;
-    options.hosted = [](size_t) { return true; };
-    koord::semantics::Heap heap;
-    sim::ReadParameters(model_, fleet_, options, heap, diagnostics);
-    auto team = koord::semantics::Team::Make(model_, options, diagnostics, std::move(heap));
-    if (team == nullptr) return team;
-    hosts_.push_back(std::make_unique<campaign::AnyFunctions>(*team));
-    team->machine().SetHost(hosts_.back().get());
-    return team;
-  }
-
- private:
-  const koord::Model& model_;
-  const sim::Fleet& fleet_;
-  std::vector<std::unique_ptr<campaign::AnyFunctions>> hosts_;
 };
 
 nlohmann::json ToJson(const campaign::CampaignReport& report, double seconds) {
@@ -75,6 +54,7 @@ nlohmann::json ToJson(const campaign::CampaignReport& report, double seconds) {
                       {"datagrams", report.datagrams},
                       {"virtual_seconds", report.seconds},
                       {"seconds", seconds},
+                      {"judging_seconds", report.judging},
                       {"longest_recovery", static_cast<double>(report.recovery) * 1e-9},
                       {"steps_of_cores", steps},
                       {"failure", nullptr}};
@@ -106,9 +86,9 @@ campaign::CampaignOptions ReadOptions(const Options& options, workspace::Session
   return search;
 }
 
-campaign::CampaignReport Search(Teams& teams, campaign::CampaignOptions& search, double& seconds) {
-  diag::Diagnostics again;  // the same for every size
-  const campaign::Fleet::MakeTeam make = [&](size_t robots) { return teams.Make(robots, again); };
+campaign::CampaignReport Search(runs::CampaignTeams& teams, campaign::CampaignOptions& search,
+                                double& seconds) {
+  const campaign::Fleet::MakeTeam make = teams.Maker();
   campaign::Fleet robots(make);
   ProgressLine line;
   const InterruptScope interrupt(search.stop);
@@ -129,14 +109,51 @@ campaign::CampaignReport Search(Teams& teams, campaign::CampaignOptions& search,
   return report;
 }
 
-// Keeps the scenario that fails; returns where.
-std::string Save(const campaign::Failure& failure, const std::string& program, const std::string& path) {
-  std::string saved = path.empty() ? std::filesystem::path(program).stem().string() + ".scenario.toml" : path;
-  const auto written =
-      base::WriteFileAtomically(saved, campaign::WriteScenario(failure.scenario, campaign::Story(failure)));
-  if (written.ok()) return saved;
-  PrintFailure(fmt::format("cannot write `{}`: {}", saved, written.error().message));
-  return {};
+runs::CampaignTexts TextsOf(runs::SimulationFiles files, const Options& options,
+                            const workspace::Session& session) {
+  sim::SimulationOptions texts;
+  files.network = options.scenarios;  // no specification
+  runs::KeepTexts(files, session, texts);
+  return {texts.program_name, texts.program, texts.spec, texts.fleet};
+}
+
+// Where a failing run is kept; empty: nowhere.
+struct Saved {
+  std::string scenario, trace;
+};
+
+Saved Save(const campaign::Trial& failure, const Options& options, const runs::CampaignTexts& texts,
+           koord::semantics::Team& team) {
+  Saved saved;
+  saved.scenario = options.save.empty()
+                       ? std::filesystem::path(texts.program_name).stem().string() + ".scenario.toml"
+                       : options.save;
+  saved.trace = std::filesystem::path(saved.scenario).replace_extension(".mcap").string();
+  const auto fails = [](std::string& path, const auto& written) {
+    if (written.ok()) return;
+    PrintFailure(fmt::format("cannot write `{}`: {}", path, written.error().message));
+    path.clear();
+  };
+  fails(saved.scenario,
+        base::WriteFileAtomically(saved.scenario,
+                                  campaign::WriteScenario(failure.scenario, campaign::Story(failure))));
+  fails(saved.trace, runs::WriteCampaignTrace(saved.trace, texts, failure, team));
+  return saved;
+}
+
+// Keeps each run in a folder, by its seed; scenarios, which may have the same, by their number.
+std::function<void(const campaign::Trial&, koord::semantics::Team&)> LogsTo(
+    const Options& options, const runs::CampaignTexts& texts) {
+  return [&options, &texts, done = uint64_t{0}, failed = false](const campaign::Trial& trial,
+                                                               koord::semantics::Team& team) mutable {
+    ++done;
+    const uint64_t number = options.scenarios.empty() ? trial.scenario.seed : done;
+    const std::string path =
+        (std::filesystem::path(options.logs) / fmt::format("{}.mcap", number)).string();
+    const auto written = runs::WriteCampaignTrace(path, texts, trial, team);
+    if (!written.ok() && !std::exchange(failed, true))
+      PrintFailure(fmt::format("cannot write `{}`: {}", path, written.error().message));
+  };
 }
 
 ExitStatus Run(const Options& options) {
@@ -152,19 +169,25 @@ ExitStatus Run(const Options& options) {
   campaign::CampaignOptions search = ReadOptions(options, session);
   campaign::CampaignReport report;
   double seconds = 0;
+  Saved saved;
+  const runs::CampaignTexts texts = TextsOf(files, options, session);
   ExitStatus status = ExitStatus::kRejected;
   if (loaded && !session.diagnostics.has_errors()) {
-    Teams teams(loaded->model, fleet);
+    runs::CampaignTeams teams(loaded->model, fleet);
     const size_t first = search.scenarios.empty() ? search.least : search.scenarios[0].robots;
     if (teams.Make(first, session.diagnostics) != nullptr && !session.diagnostics.has_errors()) {
+      if (!options.logs.empty()) search.each = LogsTo(options, texts);
       report = Search(teams, search, seconds);
       status = report.failure   ? ExitStatus::kRejected
                : report.stopped ? ExitStatus::kUndecided
                                 : ExitStatus::kEstablished;
     }
+    if (report.failure) {
+      diag::Diagnostics again;
+      const auto team = teams.Make(report.failure->scenario.robots, again);
+      saved = Save(*report.failure, options, texts, *team);
+    }
   }
-  const std::string saved =
-      report.failure ? Save(*report.failure, files.program, options.save) : std::string();
   if (options.json) {
     nlohmann::json out = ToJson(report, seconds);
     out["command"] = "campaign";
@@ -172,7 +195,8 @@ ExitStatus Run(const Options& options) {
     out["seed"] = options.seed;
     out["status"] = status;
     out["diagnostics"] = diag::RenderJson(session.sources, session.diagnostics);
-    if (!saved.empty()) out["saved"] = saved;
+    if (!saved.scenario.empty()) out["saved"] = saved.scenario;
+    if (!saved.trace.empty()) out["trace"] = saved.trace;
     PrintJson(out);
     return status;
   }
@@ -182,8 +206,11 @@ ExitStatus Run(const Options& options) {
                     base::Counted(report.runs, "run"), base::Counted(report.rounds, "round"), report.seconds,
                     seconds));
   if (report.failure) Print("\n" + campaign::Story(*report.failure));
-  if (!saved.empty())
-    Print(fmt::format("\nthe run is in {0}: `rondo campaign {1} --scenarios {0}`\n", saved, files.program));
+  if (!saved.scenario.empty())
+    Print(fmt::format("\nthe scenario is in {0}: `rondo campaign {1} --scenarios {0}`\n", saved.scenario,
+                      files.program));
+  if (!saved.trace.empty())
+    Print(fmt::format("what the robots logged is in {0}: `rondo replay {0}`\n", saved.trace));
   if (report.stopped) Print(fmt::format("interrupted: go on with `--seed {}`\n", options.seed + report.runs));
   if (status == ExitStatus::kEstablished) Print("nothing is wrong in any of them\n");
   return status;
@@ -208,7 +235,8 @@ void AddCampaignVerb(CLI::App& app, ExitStatus& status) {
   verb.Option("--robots", options->robots, "team sizes, from the least to the greatest; default: 2 to 7")
       .Between(size_t{1}, size_t{64});
   verb.Option("--scenarios", options->scenarios, "run these scenarios (TOML) instead of random ones");
-  verb.Option("--save", options->save, "where to write the scenario that fails; default: NAME.scenario.toml");
+  verb.Option("--save", options->save, "where to write the scenario that fails, and, with `.mcap`, what its robots logged; default: NAME.scenario.toml");
+  verb.Option("--logs", options->logs, "a folder for what the robots log in each run (MCAP), good or not");
   verb.Flag("--json", options->json, "the result as JSON on standard output");
   verb.Footer(
       "examples:\n"

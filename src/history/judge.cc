@@ -92,6 +92,7 @@ class Check {
     const auto [it, fresh] = said_.emplace(std::tuple(LifeOf(e), e.epoch, e.round), e.what);
     if (!fresh && record_.texts[it->second] != record_.texts[e.what])
       Say(Wrong::kTwice, fmt::format("{} says two different things in round {}", Of(e), e.round));
+    if (fresh && e.waits) waiting_.insert({e.robot, e.epoch, e.round});
     if (fresh) spoke_[{LifeOf(e), e.epoch, e.round}] = e.time;
     // What it set before it speaks can be part of what it says.
     if (const auto fell = fallen_.find(e.robot); fresh && fell != fallen_.end())
@@ -136,6 +137,9 @@ class Check {
     if (const auto it = members_.find(e.epoch); it != members_.end()) {
       for (const Life& life : it->second) may_skip[life.robot] = false;
     }
+    // Who waits for a function skips, even what is urgent.
+    for (uint32_t r = 0; r < record_.robots; ++r)
+      may_skip[r] = may_skip[r] || waiting_.contains({r, e.epoch, e.round - 1});
     ++rounds_;
     std::vector<std::vector<Word>> fallen(record_.robots);
     for (uint32_t r = 0; r < record_.robots; ++r) {
@@ -234,6 +238,7 @@ class Check {
   std::map<uint32_t, size_t> fallen_;                              // by robot: images
   std::map<std::tuple<uint32_t, uint64_t, uint64_t>, size_t>
       fell_before_;                                        // a robot spoke in a round: images
+  std::set<std::tuple<uint32_t, uint64_t, uint64_t>> waiting_;  // robot, epoch, round
   std::map<uint32_t, uint64_t> last_acted_;                // by robot: rounds
   std::map<std::pair<uint64_t, uint32_t>, size_t> waits_;  // by epoch and robot: rounds in a row
   std::vector<size_t> acts_;                               // entries

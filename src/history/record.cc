@@ -141,4 +141,26 @@ std::vector<Word> StateOf(Team& team, std::span<const Word> image) {
   return state;
 }
 
+std::string_view Name(Kind kind) {
+  switch (kind) {
+    case Kind::kStarted:
+      return "started";
+    case Kind::kCrashed:
+      return "crashed";
+    case Kind::kContributed:
+      return "contributed";
+    case Kind::kStored:
+      return "stored";
+    case Kind::kCommitted:
+      return "committed";
+    case Kind::kActed:
+      return "acted";
+    case Kind::kFellBack:
+      return "fell-back";
+    case Kind::kAdopted:
+      return "adopted";
+  }
+  return "";
+}
+
 }  // namespace rondo::history

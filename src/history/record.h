@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "koord/semantics/team.h"
@@ -31,6 +32,9 @@ enum class Kind : uint8_t {
   kAdopted,      ///< it learned who takes part from now on
 };
 
+/// Returns the name as files have it: `started`, `contributed`, ...
+std::string_view Name(Kind kind);
+
 constexpr size_t kNothing = SIZE_MAX;
 
 /// Holds one line of a log.
@@ -44,6 +48,8 @@ struct Entry {
   /// kStored, kFellBack: which image; kContributed: which text; kAdopted: which list of members. kFellBack without fallbacks
   /// in the program: `kNothing`.
   size_t what = 0;
+  int64_t stamp = 0;   ///< what the clock on the robot's wall said, which may step; for people, not for the judge
+  bool waits = false;  ///< kContributed: it leaves an event out because a function is not finished
 };
 
 /// Names one life of a robot.

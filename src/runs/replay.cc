@@ -1,14 +1,14 @@
 #include "runs/replay.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "koord/semantics/story.h"
+#include "runs/campaign_trace.h"
 #include "runs/execution_file.h"
 #include "runs/run_file.h"
+#include "runs/trace_copy.h"
 #include "sim/draw/history.h"
 #include "sim/network.h"
 #include "sim/simulation.h"
@@ -44,40 +44,6 @@ Replayed ReplayRun(const RunFile& run, workspace::Session& session) {
   return ReplaySteps(run, loaded->model);
 }
 
-std::string Name(const trace::Message& m) {
-  return fmt::format("{} at t = {:.6f} s", m.topic, static_cast<double>(m.time) * 1e-9);
-}
-
-// Where do two traces differ first?
-std::string FirstDifference(std::string_view a, std::string_view b) {
-  struct Kept {
-    std::string name;
-    std::string bytes;
-    uint64_t time;
-  };
-  std::vector<Kept> first;
-  const auto keep = trace::ForEachMessage(a, [&](const trace::Message& m) {
-    first.push_back({Name(m), std::string(m.topic) + std::string(m.bytes), m.time});
-    return true;
-  });
-  if (!keep.ok()) return keep.error().message;
-  size_t i = 0;
-  std::string result;
-  const auto compare = trace::ForEachMessage(b, [&](const trace::Message& m) {
-    if (i >= first.size())
-      result = fmt::format("the run goes on: {}", Name(m));
-    else if (first[i].time != m.time || first[i].bytes != std::string(m.topic) + std::string(m.bytes))
-      result = first[i].name == Name(m) ? first[i].name
-                                        : fmt::format("{} in the trace, {} now", first[i].name, Name(m));
-    ++i;
-    return result.empty();
-  });
-  if (!compare.ok()) return compare.error().message;
-  if (result.empty() && i < first.size())
-    result = fmt::format("the run ends earlier: {} is missing", first[i].name);
-  return result.empty() ? "the messages are the same; the files differ in their index" : result;
-}
-
 // A run of the explorer, kept as a trace.
 Replayed ReplayExplored(const std::string& bytes, const nlohmann::json& record, workspace::Session& session) {
   RunFile run;
@@ -102,6 +68,7 @@ Replayed ReplayTrace(const std::string& bytes, workspace::Session& session, cons
   const auto history = sim::ReadHistory(bytes);
   if (!history.ok()) return {false, history.error().message};
   const nlohmann::json& run = history.value().run;
+  if (sim::TextOf(run, "engine") == "campaign") return ReplayCampaign(bytes, run, session);
   if (sim::TextOf(run, "engine") == "explore") return ReplayExplored(bytes, run, session);
   sim::SimulationOptions options;
   options.program = sim::TextOf(run, "program");
@@ -118,11 +85,6 @@ Replayed ReplayTrace(const std::string& bytes, workspace::Session& session, cons
   const diag::FileId file = session.sources.Add("fleet", options.fleet);
   const sim::Fleet fleet = sim::ReadFleet(session.sources, file, session.diagnostics);
   if (session.diagnostics.has_errors()) return {false, "the fleet that the trace keeps cannot be used"};
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / fmt::format("rondo-replay-{}.mcap", ::getpid());
-  auto writer = trace::Writer::Open(path.string());
-  if (!writer.ok())
-    return {false, fmt::format("cannot write `{}`: {}", path.string(), writer.error().message)};
   sim::NetworkFaults network;
   if (run.contains("network")) {
     options.network_text = sim::TextOf(run, "network");
@@ -132,18 +94,16 @@ Replayed ReplayTrace(const std::string& bytes, workspace::Session& session, cons
     options.network = &network;
   }
   sim::SimulationReport report;
-  {
-    options.stop = replay.stop;
-    options.progress = replay.progress;
+  options.stop = replay.stop;
+  options.progress = replay.progress;
+  const auto fresh = CopyOf([&](const std::string& path) -> base::Result<bool> {
+    auto writer = trace::Writer::Open(path);
+    if (!writer.ok()) return writer.error();
     trace::Writer again = std::move(writer).value();
     diag::Diagnostics said;  // what the run violates was said when it was made
     report = sim::Simulate(loaded->model, fleet, options, &again, said);
-    const auto done = again.Finish();
-    if (!done.ok()) return {false, fmt::format("cannot write `{}`: {}", path.string(), done.error().message)};
-  }
-  auto fresh = trace::ReadTrace(path.string());
-  std::error_code ignored;
-  std::filesystem::remove(path, ignored);
+    return again.Finish();
+  });
   if (report.ended == sim::Ending::kInterrupted) return {false, "interrupted", true};
   if (!fresh.ok()) return {false, fresh.error().message};
   if (fresh.value() == bytes)

@@ -19,6 +19,7 @@ cores::Setup Networked::SetupOf(const Fleet& fleet, const SimulationOptions& opt
   setup.settings.robots = static_cast<uint32_t>(fleet.robots.size());
   setup.settings.agreement = setup.settings.session = options.seed;
   setup.settings.on_loss = fleet.rounds.on_loss;
+  setup.settings.parts = rounds::PartsOf(fleet.rounds.exchange);
   setup.settings.delta = Nanoseconds(fleet.delta);
   setup.settings.lease = Nanoseconds(fleet.rounds.lease);
   setup.settings.stop_time = Nanoseconds(fleet.rounds.stop_time);

@@ -11,19 +11,19 @@ using runtime::rounds::Time;
 void Drive(runtime::rounds::Core& core, Transport& transport, const base::StopToken& stop,
            const std::function<void(Time, const Output&)>& observe) {
   constexpr Time kLook = 50'000'000;
-  std::vector<Output> outputs;
-  std::optional<runtime::codec::Bytes> datagram;
+  runtime::rounds::Outputs outputs;
+  runtime::codec::Bytes datagram;
   while (!stop.StopRequested()) {
     const Time now = transport.Now();
-    outputs.clear();
-    core.Step(now, datagram ? View(*datagram) : View(), outputs);
+    outputs.Clear();
+    core.Step(now, View(datagram), outputs);
     for (const Output& output : outputs) {
       if (const auto* send = std::get_if<runtime::rounds::Send>(&output))
         transport.Send(send->to, send->bytes);
       else
         observe(now, output);
     }
-    datagram = transport.Receive(std::min(core.wake(), now + kLook));
+    transport.Receive(std::min(core.wake(), now + kLook), datagram);
   }
 }
 

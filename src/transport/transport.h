@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 
 #include "base/stop.h"
 #include "runtime/rounds/core.h"
@@ -19,8 +18,9 @@ class Transport {
   virtual runtime::rounds::Time Now() = 0;
   /// Sends a datagram to a robot, or to `runtime::rounds::kAll` others.
   virtual void Send(uint32_t to, runtime::codec::View bytes) = 0;
-  /// Waits for a datagram until this moment, at most; nothing if none came.
-  virtual std::optional<runtime::codec::Bytes> Receive(runtime::rounds::Time until) = 0;
+  /// Waits for a datagram until this moment, at most, and puts it into `datagram`, whose memory it may take in exchange.
+  /// Returns false, with `datagram` empty, if none came.
+  virtual bool Receive(runtime::rounds::Time until, runtime::codec::Bytes& datagram) = 0;
 };
 
 /// Runs a core until somebody asks for a stop: gives it datagrams and time, sends what it says, and calls

@@ -58,10 +58,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   settings.robots = 3;
   settings.on_loss = runtime::rounds::OnLoss::kEvict;
   Bytes record = take();
+  settings.parts = runtime::rounds::PartsOf(static_cast<runtime::rounds::Exchange>(record.size() % 3));
   record.resize(record.size() + 8);
   Seal(record, record.size() - 8, View(record).first(record.size() - 8));
   runtime::rounds::Core core(settings, node, nullptr, record);
-  std::vector<runtime::rounds::Output> outputs;
+  runtime::rounds::Outputs outputs;
   runtime::rounds::Time now = 0;
   core.Step(now, {}, outputs);
   while (!input.empty()) {
@@ -69,7 +70,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const Bytes body = take();
     datagram.insert(datagram.end(), body.begin(), body.end());
     Seal(datagram, 0, View(datagram).subspan(8));
-    outputs.clear();
+    outputs.Clear();
     now += 1'000'000 * (1 + static_cast<int64_t>(body.size() % 200));
     core.Step(now, datagram, outputs);
   }

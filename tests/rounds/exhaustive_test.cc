@@ -56,7 +56,7 @@ class Store : public Program {
   explicit Store(koord::node::Node& node) : node_(&node), state_(node.state()) {}
   void Contribute(uint64_t round, Bytes& out) override { Here().Contribute(round, out); }
   bool Accepts(uint32_t robot, View inputs, std::span<const Alternative> all) const override {
-    return node_->Accepts(robot, inputs, all);
+    return Here().Accepts(robot, inputs, all);
   }
   void Apply(uint64_t round, std::span<const Turn> turns) override {
     Here().Apply(round, turns);
@@ -134,6 +134,7 @@ struct Limits {
   bool disks = false;
   int full = 0;  // disks that take nothing from some moment on
   OnLoss on_loss = OnLoss::kEvict;
+  Exchange exchange = Exchange::kAllToAll;
   uint64_t rounds = 2;
   size_t states = 0;  // 0: all
 };
@@ -203,6 +204,7 @@ class Exploration {
     settings.robots = kRobots;
     settings.incarnation = life;
     settings.on_loss = limits_.on_loss;
+    settings.parts = PartsOf(limits_.exchange);
     settings.delta = 0;  // rounds follow each other, so that no timer is needed where nothing is lost
     settings.resend = 100;
     settings.lease = settings.patience = 200;
@@ -245,15 +247,15 @@ class Exploration {
   Reaction Move(std::shared_ptr<Robot> robot, uint32_t r, uint32_t datagram) {
     Reaction reaction;
     if (datagram == kTick) robot->now = std::max(robot->now, robot->core->wake());
-    std::vector<Output> outputs;
+    Outputs outputs;
     const Bytes bytes = datagram >= kBegin ? Bytes() : datagrams_[datagram].second;
     robot->core->Step(robot->now, bytes, outputs);
     robot->Describe();
-    for (Output& output : outputs) {
+    for (const Output& output : outputs) {
       if (const auto* send = std::get_if<Send>(&output))
         Number(r, *send, reaction.sends);
       else
-        reaction.outputs.push_back(std::move(output));
+        reaction.outputs.push_back(output);
     }
     reaction.robot = std::move(robot);
     return reaction;

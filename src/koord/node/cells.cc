@@ -59,13 +59,16 @@ void Cells::DecodeValueOf(Cell cell, Reader& reader, std::vector<Word>& words) c
     DecodeValue(team_.model().types, team_.heap(), team_.layout()[cell.variable].item, reader, words);
 }
 
-void Cells::Encode(Cell cell, std::span<const Word> words, Writer& writer) const {
+void Cells::Encode(Cell cell, size_t robot, std::span<const Word> state, std::span<const Word> words,
+                   Writer& writer) const {
   writer.Number(cell.variable);
   writer.Number(cell.item);
-  EncodeValueOf(cell, words, writer);
+  if (cell.variable == stopped()) return EncodeValueOf(cell, words, writer);
+  EncodeChange(team_.model().types, team_.heap(), team_.layout()[cell.variable].item,
+               state.subspan(Address(cell, robot), Width(cell)), words, writer);
 }
 
-Cell Cells::Decode(Reader& reader, std::vector<Word>& words) const {
+Cell Cells::Decode(size_t robot, std::span<const Word> state, Reader& reader, std::vector<Word>& words) const {
   Cell cell;
   cell.variable = static_cast<uint32_t>(reader.Number(stopped()));
   cell.item = static_cast<uint32_t>(reader.Number(UINT32_MAX));
@@ -74,7 +77,11 @@ Cell Cells::Decode(Reader& reader, std::vector<Word>& words) const {
     reader.Fail();
     return {};
   }
-  DecodeValueOf(cell, reader, words);
+  if (cell.variable == stopped())
+    DecodeValueOf(cell, reader, words);
+  else
+    DecodeChange(team_.model().types, team_.heap(), team_.layout()[cell.variable].item,
+                 state.subspan(Address(cell, robot), Width(cell)), reader, words);
   return cell;
 }
 

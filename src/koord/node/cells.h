@@ -29,10 +29,13 @@ class Cells {
   const std::vector<Cell>& own() const { return own_; }
   const std::vector<Cell>& sensors() const { return sensors_; }
 
-  /// Appends a cell with the value that these words are.
-  void Encode(Cell cell, std::span<const Word> words, runtime::codec::Writer& writer) const;
+  /// Appends a cell with the value that these words are, as a change of the one in a state; `robot`: whose it is, if each
+  /// has one.
+  void Encode(Cell cell, size_t robot, std::span<const Word> state, std::span<const Word> words,
+              runtime::codec::Writer& writer) const;
   /// Reads a cell and its value. The reader fails if there is no such cell.
-  Cell Decode(runtime::codec::Reader& reader, std::vector<Word>& words) const;
+  Cell Decode(size_t robot, std::span<const Word> state, runtime::codec::Reader& reader,
+              std::vector<Word>& words) const;
   /// Appends, reads the value alone.
   void EncodeValueOf(Cell cell, std::span<const Word> words, runtime::codec::Writer& writer) const;
   void DecodeValueOf(Cell cell, runtime::codec::Reader& reader, std::vector<Word>& words) const;

@@ -22,30 +22,31 @@ void Commands::Reset(std::span<const Word> state) {
   begun_ = overtaken_ = false;
 }
 
-void Commands::FallBack(std::vector<Word> state) {
-  real_ = std::move(state);
+void Commands::FallBack(std::span<const Word> state) {
+  real_.assign(state.begin(), state.end());
   begun_ = overtaken_ = true;
   std::erase_if(due_, [&](Cell cell) { return IsCovered(cell); });
 }
 
-std::vector<Cell> Commands::Tell(std::span<const Word> store) {
+const std::vector<Cell>& Commands::Tell(std::span<const Word> store) {
   overtaken_ = false;
-  std::vector<Cell> apart;
-  if (!begun_) return apart;
+  apart_.clear();
+  if (!begun_) return apart_;
   // What it wrote and did not act on is lost, where there is a fallback.
   std::erase_if(due_, [&](Cell cell) { return IsCovered(cell); });
   for (const Cell cell : covered_) {
     const auto value = store.subspan(cells_.Address(cell, robot_), cells_.Width(cell));
     if (!std::ranges::equal(value, std::span(real_).subspan(cells_.Address(cell, robot_), value.size())))
-      apart.push_back(cell);
+      apart_.push_back(cell);
   }
-  return apart;
+  return apart_;
 }
 
 void Commands::Apply(std::span<const Cell> written) {
   for (const Cell cell : written) {
     if (cells_.Kind(cell) != VariableKind::kActuator) continue;
-    if (!overtaken_ || !IsCovered(cell)) due_.insert(cell);
+    if (overtaken_ && IsCovered(cell)) continue;
+    if (std::ranges::find(due_, cell) == due_.end()) due_.push_back(cell);
   }
 }
 
@@ -54,19 +55,19 @@ void Commands::Load() {
   all_due_ = overtaken_ = true;
 }
 
-std::vector<Cell> Commands::Act(std::span<const Word> store) {
-  std::vector<Cell> driven;
+const std::vector<Cell>& Commands::Act(std::span<const Word> store) {
+  driven_.clear();
   for (const Cell cell : actuators_) {
     const bool all = all_due_ && (!begun_ || !IsCovered(cell));
-    if (!all && !due_.contains(cell)) continue;
-    driven.push_back(cell);
+    if (!all && std::ranges::find(due_, cell) == due_.end()) continue;
+    driven_.push_back(cell);
     const uint32_t at = cells_.Address(cell, robot_);
     std::copy_n(store.begin() + at, cells_.Width(cell), real_.begin() + at);
   }
   due_.clear();
   all_due_ = false;
   begun_ = true;
-  return driven;
+  return driven_;
 }
 
 }  // namespace rondo::koord::node

@@ -20,7 +20,10 @@ class Compiled {
     EXPECT_FALSE(diagnostics_.has_errors()) << diagnostics_.all()[0].message << "\n" << text;
   }
   std::unique_ptr<semantics::Team> Team(size_t robots) {
-    return semantics::Team::Make(model_, {robots, {}, {}, {}}, diagnostics_);
+    semantics::TeamOptions options;
+    options.robots = robots;
+    options.hosted = [](size_t) { return true; };  // whoever calls a function brings it
+    return semantics::Team::Make(model_, options, diagnostics_);
   }
 
  private:

@@ -4,7 +4,6 @@
 
 #include "base/mixed.h"
 #include "koord/semantics/fallback.h"
-#include "runtime/rounds/merge.h"
 
 namespace rondo::koord::node {
 
@@ -30,8 +29,8 @@ Node::Node(semantics::Team& team, uint32_t robot, Sensors* sensors, uint64_t see
 void Node::Reset(std::span<const Word> state, uint64_t seed) {
   state_.assign(state.begin(), state.end());
   seed_ = seed;
-  offered_.clear();
-  applied_ = {};
+  offers_ = 0;
+  applied_.Clear(0);
   failed_.reset();
   commands_.Reset(state);
 }
@@ -49,35 +48,31 @@ const std::vector<Cell>& Node::FallBack(uint64_t round) {
                      std::span(seen).subspan(cells_.Address(cell, robot_), cells_.Width(cell)));
   }
   semantics::FallBack(team_, seen, robot_);
-  commands_.FallBack(std::move(seen));
+  commands_.FallBack(seen);
   return commands_.covered();
 }
 
-void Node::EncodeEffect(const Effect& effect, Bytes& out) const {
-  // Whole cells; of one that is written in parts, all words.
-  std::vector<std::pair<Cell, std::vector<Word>>> written;
-  const auto cell_of = [&](Cell cell) -> std::vector<Word>& {
-    for (auto& [known, words] : written) {
-      if (known == cell) return words;
-    }
-    const auto at = state_.begin() + cells_.Address(cell, robot_);
-    written.emplace_back(cell, std::vector<Word>(at, at + cells_.Width(cell)));
-    return written.back().second;
+// Whole cells; of one that is written in parts, all words.
+void Node::EncodeEffect(const Effect& effect, std::span<const Word> store, Bytes& out) {
+  touched_.clear();
+  std::vector<Word>& after = seen_;
+  const auto write = [&](uint32_t at, Word value) {
+    const Cell cell = cells_.At(at);
+    if (std::ranges::find(touched_, cell) == touched_.end()) touched_.push_back(cell);
+    after[at] = value;
   };
-  for (const Effect::Write& write : effect.own) {
-    const Cell cell = cells_.At(write.at);
-    cell_of(cell)[write.at - cells_.Address(cell, robot_)] = write.value;
-  }
+  for (const Effect::Write& w : effect.own) write(w.at, w.value);
   for (const Effect::Shared& shared : effect.shared) {
-    for (uint32_t k = 0; k < shared.unit.width; ++k) {
-      const uint32_t at = shared.unit.at + k;
-      const Cell cell = cells_.At(at);
-      cell_of(cell)[at - cells_.Address(cell, robot_)] = effect.words[shared.values + k];
-    }
+    for (uint32_t k = 0; k < shared.unit.width; ++k)
+      write(shared.unit.at + k, effect.words[shared.values + k]);
   }
   Writer writer(out);
-  writer.Number(written.size());
-  for (const auto& [cell, words] : written) cells_.Encode(cell, words, writer);
+  writer.Number(touched_.size());
+  for (const Cell cell : touched_) {
+    const uint32_t at = cells_.Address(cell, robot_), width = cells_.Width(cell);
+    cells_.Encode(cell, robot_, store, std::span(after).subspan(at, width), writer);
+    std::copy_n(before_.begin() + at, width, after.begin() + at);
+  }
 }
 
 size_t Node::First(uint64_t round, std::span<const Effect> effects) const {
@@ -86,100 +81,123 @@ size_t Node::First(uint64_t round, std::span<const Effect> effects) const {
   return base::Mixed(seed_ ^ base::Mixed(round * 1024 + robot_)) % effects.size();
 }
 
-void Node::Contribute(uint64_t round, Bytes& out) {
-  // The robot sees the world as it is now; the store gets that with the frame.
-  std::vector<Word> seen = state_;
-  Bytes inputs;
+// What the robot sees of the world now goes into `seen_`; the store gets it with the frame.
+void Node::See(uint64_t round, std::span<const Word> store, Bytes& inputs) {
+  seen_.assign(store.begin(), store.end());
   Writer writer(inputs);
-  const std::vector<Cell> apart = commands_.Tell(state_);
+  const std::vector<Cell>& apart = commands_.Tell(store);
   writer.Number(cells_.sensors().size() + apart.size());
+  const auto tell = [&](Cell cell, std::span<const Word> words) {
+    cells_.Encode(cell, robot_, store, words, writer);
+  };
   for (const Cell cell : cells_.sensors()) {
-    const std::span<Word> words(seen.data() + cells_.Address(cell, robot_), cells_.Width(cell));
+    const std::span<Word> words(seen_.data() + cells_.Address(cell, robot_), cells_.Width(cell));
     if (sensors_ != nullptr) sensors_->Read(robot_, round, cell, words);
-    cells_.Encode(cell, words, writer);
+    tell(cell, words);
   }
   for (const Cell cell : apart) {
-    const uint32_t at = cells_.Address(cell, robot_);
-    std::copy_n(real().begin() + at, cells_.Width(cell), seen.begin() + at);
-    cells_.Encode(cell, std::span(seen).subspan(at, cells_.Width(cell)), writer);
+    const uint32_t at = cells_.Address(cell, robot_), width = cells_.Width(cell);
+    std::copy_n(real().begin() + at, width, seen_.begin() + at);
+    tell(cell, std::span(seen_).subspan(at, width));
   }
-  std::swap(seen, state_);
+}
+
+void Node::Offer(const Effect& effect, std::span<const Word> store) {
+  if (offers_ == offered_.size()) offered_.emplace_back();
+  Offered& offered = offered_[offers_++];
+  offered.event = effect.event;
+  offered.effect.clear();
+  EncodeEffect(effect, store, offered.effect);
+  offered.said.clear();
+  for (const semantics::Said& said : effect.said)
+    offered.said.push_back(team_.ShowLogged(said.type, said.value));
+}
+
+void Node::Contribute(uint64_t round, Bytes& out) {
+  round_ = round;
+  inputs_.clear();
+  See(round, state_, inputs_);
   if (round == 0)
-    transition_.PrepareInit(state_);
+    transition_.PrepareInit(seen_);
   else
-    transition_.Prepare(state_, robot_);
+    transition_.Prepare(seen_, robot_);
+  before_ = seen_;
   const auto effects = transition_.Of(robot_);
-  runtime::rounds::Contribution contribution;
-  offered_.clear();
-  offered_.reserve(effects.size());
+  offers_ = 0;
   failed_.reset();
   const size_t first = First(round, effects);
-  if (first < effects.size() && effects[first].fault != semantics::Fault::kNone)
+  waits_ = std::ranges::any_of(effects, [](const Effect& e) { return e.fault == semantics::Fault::kNotYet; });
+  if (first < effects.size() && effects[first].fault != semantics::Fault::kNone &&
+      effects[first].fault != semantics::Fault::kNotYet)
     failed_ = {round == 0 ? kInit : effects[first].event, effects[first].fault, effects[first].fault_span};
   const size_t count =
       first < effects.size() ? std::min(effects.size(), runtime::rounds::kMostAlternatives) : 0;
+  contribution_.alternatives.clear();
   for (size_t i = 0; i < count; ++i) {
     const Effect& effect = effects[(first + i) % effects.size()];
     if (effect.fault != semantics::Fault::kNone) continue;
-    Offered& offered = offered_.emplace_back();
-    offered.event = effect.event;
-    EncodeEffect(effect, offered.effect);
-    for (const semantics::Said& said : effect.said)
-      offered.said.push_back(team_.ShowLogged(said.type, said.value));
-    contribution.alternatives.push_back({effect.event, effect.locks, offered.effect});
+    Offer(effect, state_);
+    contribution_.alternatives.push_back({effect.event, effect.locks, {}});
     if (!effect.locks) break;  // nothing can take it away
   }
-  std::swap(seen, state_);
-  contribution.inputs = inputs;
-  runtime::rounds::Encode(contribution, out);
+  for (size_t i = 0; i < offers_; ++i) contribution_.alternatives[i].effect = offered_[i].effect;
+  contribution_.inputs = inputs_;
+  runtime::rounds::Encode(contribution_, out);
 }
 
-// Reads cells and, if there is a state, puts them there; `cells` gets which they were.
-bool Node::Reads(View bytes, uint32_t robot, bool inputs, std::vector<Word>* state,
-                 std::vector<Cell>* cells) const {
+// Reads cells, which are changes of `before`, and, if there is a state, puts them there; `cells` gets which they were.
+bool Node::Reads(View bytes, uint32_t robot, bool inputs, std::span<const Word> before,
+                 std::vector<Word>* state, std::vector<Cell>* cells) const {
   if (bytes.empty()) return inputs;  // nothing new
   Reader reader(bytes);
   const size_t count = reader.Number(bytes.size());
-  std::vector<Word> words;
   for (size_t i = 0; i < count && reader.ok(); ++i) {
-    words.clear();
-    const Cell cell = cells_.Decode(reader, words);
+    read_.clear();
+    const Cell cell = cells_.Decode(robot, before, reader, read_);
     if (!reader.ok()) return false;
     const bool sensor = cells_.Kind(cell) == VariableKind::kSensor;
     if (inputs ? !sensor && !commands_.IsCovered(cell) : sensor) return false;
-    if (state != nullptr) std::ranges::copy(words, state->begin() + cells_.Address(cell, robot));
+    if (state != nullptr) std::ranges::copy(read_, state->begin() + cells_.Address(cell, robot));
     if (cells != nullptr) cells->push_back(cell);
   }
   return reader.Complete();
 }
 
 bool Node::Accepts(uint32_t robot, View inputs, std::span<const Alternative> alternatives) const {
-  if (!Reads(inputs, robot, true, nullptr)) return false;
+  if (!Reads(inputs, robot, true, state_, nullptr)) return false;
   return std::ranges::all_of(alternatives, [&](const Alternative& a) {
-    return a.event <= team_.events().size() && Reads(a.effect, robot, false, nullptr);
+    return a.event <= team_.events().size() && Reads(a.effect, robot, false, state_, nullptr);
   });
 }
 
 void Node::Apply(uint64_t, std::span<const runtime::rounds::Turn> turns) {
-  for (const auto& turn : turns) Reads(turn.inputs, turn.robot, true, &state_);
-  applied_ = {};
-  applied_.events.resize(team_.robots());
+  // What everybody said is a change of the store at the start of the round.
+  before_ = state_;
+  for (const auto& turn : turns) Reads(turn.inputs, turn.robot, true, before_, &state_);
+  applied_.Clear(team_.robots());
   for (const auto& turn : turns) {
     if (turn.does == nullptr) continue;
     const bool own = turn.robot == robot_;
-    Reads(turn.does->effect, turn.robot, false, &state_, own ? &applied_.written : nullptr);
+    Reads(turn.does->effect, turn.robot, false, before_, &state_, own ? &applied_.written : nullptr);
     applied_.events[turn.robot] = turn.does->event;
     if (!own) continue;
     const auto same = [&](const Offered& o) {
       return o.event == turn.does->event && std::ranges::equal(o.effect, turn.does->effect);
     };
-    if (const auto it = std::ranges::find_if(offered_, same); it != offered_.end()) applied_.said = it->said;
+    const std::span<const Offered> offered(offered_.data(), offers_);
+    if (const auto it = std::ranges::find_if(offered, same); it != offered.end())
+      applied_.said.assign(it->said.begin(), it->said.end());
   }
   commands_.Apply(applied_.written);
+  Collect();
+}
+
+// Often enough that the heap comes to an end of growing soon, and seldom enough that it costs little.
+void Node::Collect() {
   if (team_.heap().words_in_use() < collect_at_) return;
   const std::span<const Word> states[] = {state_, real()};
   team_.Collect(states);
-  collect_at_ = std::max<size_t>(1'000'000, 2 * team_.heap().words_in_use());
+  collect_at_ = 4096 + 2 * team_.heap().words_in_use();
 }
 
 void Node::Save(Bytes& out) const {
@@ -209,7 +227,7 @@ bool Node::Load(View bytes) {
   }
   if (!reader.Complete()) return false;
   state_ = std::move(state);
-  applied_ = {};
+  applied_.Clear(0);
   commands_.Load();
   return true;
 }

@@ -8,7 +8,7 @@
 #include "koord/node/cells.h"
 #include "koord/node/commands.h"
 #include "koord/semantics/program_transition.h"
-#include "runtime/rounds/program.h"
+#include "runtime/rounds/merge.h"
 
 /// Presents Koord programs to the round protocol, run by the machine.
 namespace rondo::koord::node {
@@ -26,6 +26,12 @@ struct Applied {
   std::vector<std::optional<uint32_t>> events;  ///< by robot; nothing: it skipped
   std::vector<Cell> written;                    ///< by this robot
   std::vector<std::string> said;                ///< by this robot, to streams
+  /// Forgets everything but the memory. `robots`: none, if the store came from another robot.
+  void Clear(size_t robots) {
+    events.assign(robots, std::nullopt);
+    written.clear();
+    said.clear();
+  }
 };
 
 /// Says why an event has no value, and where in the program.
@@ -68,7 +74,7 @@ class Node : public runtime::rounds::Program {
   /// values in `real`; those whose fallback has no value hold.
   const std::vector<Cell>& FallBack(uint64_t round);
   /// Says that the robot acts on the store. Returns the actuators that get what it says.
-  std::vector<Cell> Act() { return commands_.Act(state_); }
+  const std::vector<Cell>& Act() { return commands_.Act(state_); }
   /// Returns the state of the team as this robot sees it: its sensors when it fell back, and its actuators since.
   const std::vector<Word>& real() const { return commands_.real(); }
 
@@ -76,13 +82,20 @@ class Node : public runtime::rounds::Program {
   const Applied& applied() const { return applied_; }
   /// Returns why the event that the robot would have liked best in this round is left out; nothing if it is not.
   const std::optional<Failure>& failed() const { return failed_; }
+  /// Reports whether, in this round, an event is left out because a function is not finished.
+  bool waits() const { return waits_; }
+  /// Returns the round of which the robot says, or said last, what it does.
+  uint64_t round() const { return round_; }
   const Cells& cells() const { return cells_; }
 
  private:
   size_t First(uint64_t round, std::span<const semantics::Effect> effects) const;
-  void EncodeEffect(const semantics::Effect& effect, runtime::codec::Bytes& out) const;
-  bool Reads(runtime::codec::View bytes, uint32_t robot, bool inputs, std::vector<Word>* state,
-             std::vector<Cell>* cells = nullptr) const;
+  void See(uint64_t round, std::span<const Word> store, runtime::codec::Bytes& inputs);
+  void Offer(const semantics::Effect& effect, std::span<const Word> store);
+  void EncodeEffect(const semantics::Effect& effect, std::span<const Word> store, runtime::codec::Bytes& out);
+  bool Reads(runtime::codec::View bytes, uint32_t robot, bool inputs, std::span<const Word> before,
+             std::vector<Word>* state, std::vector<Cell>* cells = nullptr) const;
+  void Collect();
 
   semantics::Team& team_;
   uint32_t robot_;
@@ -97,11 +110,21 @@ class Node : public runtime::rounds::Program {
     runtime::codec::Bytes effect;
     std::vector<std::string> said;
   };
-  std::vector<Offered> offered_;  // by this robot, in this round
+  std::vector<Offered> offered_;  // by this robot, in this round: so many of these
+  size_t offers_ = 0;
   Applied applied_;
   std::optional<Failure> failed_;
+  bool waits_ = false;
+  uint64_t round_ = 0;
   Commands commands_;
-  size_t collect_at_ = 1'000'000;  // words of the heap
+  size_t collect_at_ = 0;  // words of the heap
+
+  // Kept for their memory.
+  std::vector<Word> seen_, before_;
+  runtime::codec::Bytes inputs_;
+  runtime::rounds::Contribution contribution_;
+  std::vector<Cell> touched_;
+  mutable std::vector<Word> read_;
 };
 
 }  // namespace rondo::koord::node

@@ -48,6 +48,20 @@ class Steady : public Sensors {
   }
 };
 
+Contribution Read(const Bytes& payload) {
+  Contribution contribution;
+  EXPECT_TRUE(runtime::rounds::Decode(View(payload), contribution));
+  return contribution;
+}
+
+std::vector<runtime::rounds::Turn> TurnsOf(uint64_t round, const std::vector<uint32_t>& robots,
+                                           const std::vector<Contribution>& contributions) {
+  std::vector<runtime::rounds::Turn> turns;
+  const auto parts = runtime::rounds::PartsOf(runtime::rounds::Exchange::kAllToAll);
+  runtime::rounds::Merge(round, *parts.locks, robots, contributions, turns);
+  return turns;
+}
+
 // A robot of its own heap for each node, as on machines.
 class NodeTest : public testing::Test {
  protected:
@@ -61,12 +75,12 @@ class NodeTest : public testing::Test {
     std::vector<Bytes> payloads(3);
     std::vector<Contribution> contributions;
     for (uint32_t r = 0; r < 3; ++r) nodes_[r]->Contribute(round, payloads[r]);
-    for (const Bytes& payload : payloads) contributions.push_back(*runtime::rounds::Decode(View(payload)));
+    for (const Bytes& payload : payloads) contributions.push_back(Read(payload));
     const std::vector<uint32_t> robots{0, 1, 2};
     for (const auto& node : nodes_) {
       for (uint32_t r = 0; r < 3; ++r)
         EXPECT_TRUE(node->Accepts(r, contributions[r].inputs, contributions[r].alternatives));
-      node->Apply(round, runtime::rounds::Merge(round, robots, contributions));
+      node->Apply(round, TurnsOf(round, robots, contributions));
     }
   }
   Bytes Store(size_t robot) {
@@ -143,7 +157,7 @@ TEST_F(NodeTest, AFrameWritesNoSensorAndItsInputsNothingElse) {
   writer.Number(1);
   const Cell sensor = nodes_[0]->cells().sensors()[0];
   const Word half = semantics::FromFloat(0.5);
-  nodes_[0]->cells().Encode(sensor, std::span(&half, 1), writer);
+  nodes_[0]->cells().Encode(sensor, 1, nodes_[0]->state(), std::span(&half, 1), writer);
   const runtime::rounds::Alternative writes_sensor{0, false, cells};
   EXPECT_TRUE(nodes_[0]->Accepts(1, cells, {}));
   Bytes none;
@@ -159,17 +173,17 @@ TEST_F(NodeTest, ValuesThatAreNoneAreRefused) {
   Bytes nan;
   Writer writer(nan);
   const Word no_number = semantics::FromFloat(std::numeric_limits<double>::quiet_NaN());
-  cells.Encode(cells.sensors()[0], std::span(&no_number, 1), writer);
+  cells.Encode(cells.sensors()[0], 0, nodes_[0]->state(), std::span(&no_number, 1), writer);
   Reader reader(nan);
   std::vector<Word> words;
-  cells.Decode(reader, words);
+  cells.Decode(0, nodes_[0]->state(), reader, words);
   EXPECT_FALSE(reader.ok());
   Bytes nowhere;
   Writer far(nowhere);
   far.Number(3);
   far.Number(12345);
   Reader missing(nowhere);
-  cells.Decode(missing, words);
+  cells.Decode(0, nodes_[0]->state(), missing, words);
   EXPECT_FALSE(missing.ok());
 }
 
@@ -213,7 +227,7 @@ TEST(Node, SaysWhyAnEventIsLeftOut) {
   ASSERT_TRUE(node.failed());
   EXPECT_EQ(node.failed()->event, 0U);
   EXPECT_EQ(node.failed()->fault, semantics::Fault::kDivision);
-  EXPECT_TRUE(runtime::rounds::Decode(View(payload))->alternatives.empty());
+  EXPECT_TRUE(Read(payload).alternatives.empty());
 }
 
 constexpr const char* kFalling = R"(
@@ -242,14 +256,14 @@ class FallbackTest : public testing::Test {
   Bytes Contribute(uint64_t round) {
     Bytes payload;
     node_.Contribute(round, payload);
-    EXPECT_TRUE(runtime::rounds::Decode(View(payload)));
+    Read(payload);
     return payload;
   }
   void Apply(uint64_t round, const Bytes& payload) {
     const std::vector<uint32_t> robots{0};
-    const std::vector<Contribution> contributions{*runtime::rounds::Decode(View(payload))};
+    const std::vector<Contribution> contributions{Read(payload)};
     ASSERT_TRUE(node_.Accepts(0, contributions[0].inputs, contributions[0].alternatives));
-    node_.Apply(round, runtime::rounds::Merge(round, robots, contributions));
+    node_.Apply(round, TurnsOf(round, robots, contributions));
   }
   size_t Variable(const std::string& name) const {
     for (size_t v = 0; v < team_->model().variables.size(); ++v) {
@@ -353,7 +367,7 @@ TEST_F(FallbackTest, FramesMayTellOfNoOtherActuator) {
     Writer writer(cells);
     writer.Number(1);
     const Word zero = 0;
-    node_.cells().Encode({static_cast<uint32_t>(Variable(name)), 0}, std::span(&zero, 1), writer);
+    node_.cells().Encode({static_cast<uint32_t>(Variable(name)), 0}, 0, node_.state(), std::span(&zero, 1), writer);
     return node_.Accepts(0, cells, {});
   };
   EXPECT_TRUE(accepts("Motion.v"));

@@ -19,4 +19,13 @@ void EncodeValue(const lang::TypeTable& types, const Heap& heap, TypeId type, st
 void DecodeValue(const lang::TypeTable& types, Heap& heap, TypeId type, runtime::codec::Reader& reader,
                  std::vector<Word>& words, int level = 0);
 
+/// Appends what a value became that was another one before: of lists, only the items that are not as they were, so
+/// that a long list to which something is appended is a short change.
+void EncodeChange(const lang::TypeTable& types, const Heap& heap, TypeId type, std::span<const Word> before,
+                  std::span<const Word> after, runtime::codec::Writer& writer);
+
+/// Reads that, as `DecodeValue` does. The reader fails on what is no change of that value, too.
+void DecodeChange(const lang::TypeTable& types, Heap& heap, TypeId type, std::span<const Word> before,
+                  runtime::codec::Reader& reader, std::vector<Word>& words);
+
 }  // namespace rondo::koord::node

@@ -47,11 +47,12 @@ bool ProgramTransition::NextChoices() {
 }
 
 // Once for each sequence of choices.
-void ProgramTransition::Each(const std::function<Fault*()>& run) {
+template <typename Way>
+void ProgramTransition::Each(const Way& way) {
   picks_.clear();
   size_t ways = 0;
   do {
-    Fault* fault = run();
+    Fault* fault = way();
     // More than anybody could look at: a fault, not fewer possibilities.
     if (++ways == kMostWays && *fault == Fault::kNone && !picks_.empty()) *fault = Fault::kTooMany;
   } while (ways < kMostWays && NextChoices());
@@ -131,8 +132,11 @@ void ProgramTransition::Find(size_t r) {
   std::vector<Effect>& all = effects_[r];
   const auto end = all.begin() + static_cast<ptrdiff_t>(counts_[r]);
   if (any_urgent_ && std::any_of(all.begin(), end, [](const Effect& e) { return e.urgent; })) {
-    counts_[r] = static_cast<size_t>(
-        std::stable_partition(all.begin(), end, [](const Effect& e) { return e.urgent; }) - all.begin());
+    size_t kept = 0;
+    for (size_t k = 0; k < counts_[r]; ++k) {
+      if (all[k].urgent) std::swap(all[kept++], all[k]);
+    }
+    counts_[r] = kept;
   }
 }
 

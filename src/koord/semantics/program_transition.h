@@ -88,7 +88,8 @@ class ProgramTransition {
   void Find(size_t robot);
   void Run(size_t robot, uint32_t event, uint32_t entry, Effect& effect);
   void RunInits(size_t robot, Effect& effect);
-  void Each(const std::function<Fault*()>& run);
+  template <typename Way>
+  void Each(const Way& way);
   uint64_t Pick(uint64_t possibilities);
   bool NextChoices();
   Effect& Next(size_t robot);

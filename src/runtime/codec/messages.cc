@@ -5,7 +5,7 @@
 namespace rondo::runtime::codec {
 namespace {
 
-constexpr uint8_t kMagic = 0xd0, kVersion = 1;
+constexpr uint8_t kMagic = 0xd0, kVersion = 2;
 constexpr size_t kSum = 8;
 constexpr size_t kMostParts = kMostPayload / kPart + 1;
 
@@ -39,13 +39,14 @@ void Get(Reader& r, MemberSet& set) {
   if (used > 0 && set.words[used - 1] == 0) r.Fail();
 }
 
-constexpr uint8_t kHolds = 1, kCounts = 2, kAsks = 4, kForwards = 8, kWindow = 16;
+constexpr uint8_t kHolds = 1, kCounts = 2, kAsks = 4, kForwards = 8, kFinal = 16, kWindow = 32;
 
 void Put(Writer& w, const Status& s) {
   const bool window = s.from != 0 || s.window != UINT64_MAX;
   Write(w, s.at);
   w.Byte(static_cast<uint8_t>((s.holds ? kHolds : 0) | (s.counts ? kCounts : 0) | (s.asks ? kAsks : 0) |
-                              (s.forwards ? kForwards : 0) | (window ? kWindow : 0)));
+                              (s.forwards ? kForwards : 0) | (s.final ? kFinal : 0) |
+                              (window ? kWindow : 0)));
   Put(w, s.lacks);
   if (!window) return;
   w.Number(s.from);
@@ -59,6 +60,7 @@ void Get(Reader& r, size_t, Status& s) {
   s.counts = (flags & kCounts) != 0;
   s.asks = (flags & kAsks) != 0;
   s.forwards = (flags & kForwards) != 0;
+  s.final = (flags & kFinal) != 0;
   Get(r, s.lacks);
   if ((flags & kWindow) == 0) return;
   s.from = static_cast<uint32_t>(r.Number(kMostParts));
@@ -68,7 +70,7 @@ void Get(Reader& r, size_t, Status& s) {
 
 void Put(Writer& w, const Part& p) {
   Write(w, p.at);
-  w.Byte(p.of ? 1 : 0);
+  w.Byte(static_cast<uint8_t>(p.what));
   if (p.of) Write(w, *p.of);
   w.Fixed(p.sum);
   w.Number(p.index);
@@ -77,7 +79,8 @@ void Put(Writer& w, const Part& p) {
 }
 void Get(Reader& r, size_t robots, Part& p) {
   p.at = ReadPlace(r);
-  if (ReadFlag(r)) p.of = ReadMember(r, robots);
+  p.what = static_cast<What>(r.Number(static_cast<uint64_t>(What::kFrames)));
+  if (p.what == What::kFrame) p.of = ReadMember(r, robots);
   p.sum = r.Fixed();
   p.index = static_cast<uint32_t>(r.Number(kMostParts));
   p.count = static_cast<uint32_t>(r.Number(kMostParts));

@@ -65,6 +65,7 @@ struct Status {
   bool counts = false;    ///< and will not forget it, so that it counts towards a majority
   bool asks = false;      ///< it wants to know where the receiver is
   bool forwards = false;  ///< the receiver shall send what the sender lacks also of others
+  bool final = false;     ///< a majority of the fleet has that store
   MemberSet lacks;        ///< whose frames of this round it does not have
   /// Says which parts it lacks of the store, if it does not hold it, else of the first frame that it lacks:
   /// bit k of `window` stands for part `from` + k.
@@ -73,10 +74,18 @@ struct Status {
   friend bool operator==(const Status&, const Status&) = default;
 };
 
-/// Holds a part of a frame (what one robot does in a round) or of a store.
+/// Names what travels in parts.
+enum class What : uint8_t {
+  kStore,
+  kFrame,   ///< what one robot does in a round
+  kFrames,  ///< those of all members, each a block, in order
+};
+
+/// Holds a part of one of these.
 struct Part {
+  What what = What::kStore;
   Place at;
-  std::optional<Member> of;  ///< whose frame; none: the store
+  std::optional<Member> of;  ///< whose frame; nothing of all else
   uint64_t sum = 0;          ///< of the whole
   uint32_t index = 0, count = 1;
   View bytes;

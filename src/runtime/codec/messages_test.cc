@@ -20,11 +20,12 @@ Refused Read(View bytes, Message& message) { return Decode(bytes, kAgreement, kS
 std::vector<Body> All() {
   static const Bytes payload(kPart, 42);
   const Decision decision{2, {{0, 1}, {4, 9}}, {1, 30}, 0xabcdef};
-  Status status{{1, 30}, true, true, true, false, {}, 3, 5};
+  Status status{{1, 30}, true, true, true, false, true, {}, 3, 5};
   status.lacks.Add(200);
   return {status,
-          Part{{1, 30}, Member{2, 5}, 99, 0, 2, payload},
-          Part{{2, 30}, std::nullopt, 99, 1, 2, View(payload).first(3)},
+          Part{What::kFrame, {1, 30}, Member{2, 5}, 99, 0, 2, payload},
+          Part{What::kStore, {2, 30}, std::nullopt, 99, 1, 2, View(payload).first(3)},
+          Part{What::kFrames, {2, 30}, std::nullopt, 99, 0, 1, View(payload).first(7)},
           Prepare{2, {4, 1, 9}},
           Promise{2, {4, 1, 9}, Ballot{3, 0, 2}, decision, {1, 30}, 77},
           Promise{2, {4, 1, 9}, std::nullopt, std::nullopt, {1, 30}, 77},

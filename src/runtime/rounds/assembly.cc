@@ -28,9 +28,18 @@ bool Assembly::Add(const codec::Part& part) {
   return true;
 }
 
-void Assembly::Set(codec::Bytes whole) {
-  whole_ = std::move(whole);
+codec::Bytes& Assembly::Make() {
+  Clear();
   complete_ = true;
+  return whole_;
+}
+
+void Assembly::Clear() {
+  whole_.clear();
+  has_.clear();
+  count_ = 0;
+  sum_ = 0;
+  complete_ = false;
 }
 
 void Assembly::Missing(uint32_t& from, uint64_t& window) const {

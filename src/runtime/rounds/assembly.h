@@ -15,9 +15,10 @@ class Assembly {
   bool Add(const codec::Part& part);
   /// Reports whether the part belongs to the same whole as those that came before.
   bool Fits(const codec::Part& part) const;
-  /// Sets the whole.
-  void Set(codec::Bytes whole);
-  void Clear() { *this = Assembly(); }
+  /// Says that the whole is made here: it is what is put into the bytes, which are empty at first.
+  codec::Bytes& Make();
+  /// Forgets everything but the memory.
+  void Clear();
 
   bool complete() const { return complete_; }
   const codec::Bytes& whole() const { return whole_; }
@@ -35,9 +36,10 @@ class Assembly {
 };
 
 /// Calls `send` with each part of a whole that the window asks for.
+/// @param of  of a frame, whose it is.
 template <typename Send>
-void ForParts(codec::Place at, std::optional<codec::Member> of, const codec::Bytes& whole, uint32_t from,
-              uint64_t window, const Send& send) {
+void ForParts(codec::What what, codec::Place at, std::optional<codec::Member> of, const codec::Bytes& whole,
+              uint32_t from, uint64_t window, const Send& send) {
   const auto count =
       static_cast<uint32_t>(std::max<size_t>(1, (whole.size() + codec::kPart - 1) / codec::kPart));
   const uint64_t sum = codec::Sum(whole);
@@ -45,7 +47,7 @@ void ForParts(codec::Place at, std::optional<codec::Member> of, const codec::Byt
     if ((window >> k & 1) == 0) continue;
     const size_t begin = size_t{from + k} * codec::kPart;
     const auto part = codec::View(whole).subspan(begin, std::min(codec::kPart, whole.size() - begin));
-    send(codec::Part{at, of, sum, from + k, count, part});
+    send(codec::Part{what, at, of, sum, from + k, count, part});
   }
 }
 

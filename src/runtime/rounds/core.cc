@@ -36,7 +36,7 @@ Core::Core(const Settings& settings, Program& program, Disk* disk, std::optional
   if (record) Recall(*record);
 }
 
-void Core::Step(Time now, View datagram, std::vector<Output>& outputs) {
+void Core::Step(Time now, View datagram, Outputs& outputs) {
   now_ = std::max(now_, now);
   outputs_ = &outputs;
   if (settings_.robots > codec::kMostRobots || settings_.self >= settings_.robots) {
@@ -56,18 +56,18 @@ void Core::Step(Time now, View datagram, std::vector<Output>& outputs) {
 }
 
 void Core::Post(uint32_t to, codec::Body body) {
-  Send send{to, {}};
+  Send send{to, outputs_->Empty()};
   codec::Encode(
       {settings_.agreement, settings_.session, {settings_.self, settings_.incarnation}, std::move(body)},
       send.bytes);
-  outputs_->push_back(std::move(send));
+  outputs_->Add(std::move(send));
 }
 
 void Core::Fail(const char* what) {
-  if (active_) outputs_->push_back(FallBack{});
+  if (active_) outputs_->Add(FallBack{});
   active_ = false;
   phase_ = Phase::kHalted;
-  outputs_->push_back(Broken{what});
+  outputs_->Add(Broken{what});
 }
 
 bool Core::Recent(uint32_t robot) const {
@@ -83,7 +83,7 @@ int Core::RankOf(Member member) const {
 }
 
 void Core::Receive(View bytes) {
-  codec::Message message;
+  codec::Message& message = message_;
   const codec::Refused why =
       codec::Decode(bytes, settings_.agreement, settings_.session, settings_.robots, message);
   ++refused_[static_cast<size_t>(why)];
@@ -104,44 +104,65 @@ void Core::On(Member from, const codec::Status& status) {
   // Datagrams overtake each other; nobody goes back.
   if (status.at > peer.at) {
     peer.at = status.at;
-    peer.holds = peer.counts = peer.began = false;
+    peer.holds = peer.counts = peer.final = false;
   }
   if (status.at == peer.at) {
     peer.holds = peer.holds || status.holds;
     peer.counts = peer.counts || status.counts;
+    peer.final = peer.final || status.final;
   }
+  if (status.final) SeeFinal(status.at);
   TryCommit();
   Serve(from, status);
 }
 
 void Core::On(Member from, const codec::Part& part) {
   if (!decision_ || part.at.epoch != Epoch() || phase_ == Phase::kHalted) return;
-  if (!part.of) {
+  if (part.what == codec::What::kStore) {
     if (phase_ != Phase::kFetching || part.at != place_ || part.sum != decision_->digest) return;
     progress_at_ = now_;
     if (base_.Add(part)) Enter();
     return;
   }
+  if (rank_ < 0 || part.at != place_ || held_ != place_) return;
+  if (part.what == codec::What::kFrames) return Unpack(part);
   const int rank = RankOf(*part.of);
-  if (rank < 0 || rank_ < 0 || part.at != place_ || held_ != place_) return;
+  if (rank < 0) return;
   if (*part.of == from) {
-    // Who begins a round has seen that a majority stores its beginning, and has waited for the leases of others.
-    not_before_ = std::min(not_before_, now_);
+    // Who begins a round has seen that a majority stores its beginning.
+    SeeFinal(part.at);
     Peer& peer = peers_[from.robot];
     if (part.at > peer.at) peer = {peer.incarnation, true, now_, part.at, false, false, false};
-    if (part.at == peer.at) peer.holds = peer.began = true;
+    if (part.at == peer.at) peer.holds = peer.final = true;
     TryCommit();
   }
   Assembly& frame = frames_[static_cast<size_t>(rank)];
   // Nobody knows better what its frame is.
   if (*part.of == from && !frame.complete() && !frame.Fits(part)) frame.Clear();
   if (frame.complete() || !frame.Add(part)) return;
-  const auto contribution = Decode(View(frame.whole()));
-  if (!contribution || !program_->Accepts(part.of->robot, contribution->inputs, contribution->alternatives)) {
+  if (Acceptable(part.of->robot, View(frame.whole())))
+    TryMerge();
+  else
     frame.Clear();
-    ++refused_[static_cast<size_t>(codec::Refused::kMalformed)];
-    return;
+}
+
+// Somebody calls the store of this place final: it has waited for the leases of those who are no members.
+void Core::SeeFinal(Place at) {
+  if (decision_ && at.epoch == Epoch()) not_before_ = std::min(not_before_, now_);
+}
+
+// The frames of all members: those that are not here yet are taken from it.
+void Core::Unpack(const codec::Part& part) {
+  if (!bundle_.complete() && !bundle_.Fits(part)) bundle_.Clear();
+  if (bundle_.complete() || !bundle_.Add(part)) return;
+  codec::Reader reader(View(bundle_.whole()));
+  for (size_t k = 0; k < frames_.size(); ++k) {
+    const View whole = reader.Block(codec::kMostPayload);
+    if (!reader.ok()) break;
+    if (frames_[k].complete() || !Acceptable(members_[k], whole)) continue;
+    frames_[k].Make().assign(whole.begin(), whole.end());
   }
+  bundle_.Clear();
   TryMerge();
 }
 

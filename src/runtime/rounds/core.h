@@ -2,11 +2,11 @@
 
 #include <array>
 #include <optional>
-#include <variant>
 #include <vector>
 
 #include "runtime/rounds/assembly.h"
 #include "runtime/rounds/merge.h"
+#include "runtime/rounds/outputs.h"
 #include "runtime/rounds/register.h"
 #include "runtime/rounds/settings.h"
 
@@ -15,42 +15,6 @@
 namespace rondo::runtime::rounds {
 
 using codec::Member;
-
-constexpr uint32_t kAll = UINT32_MAX;
-
-/// Asks to send a datagram to a robot, or to `kAll` others.
-struct Send {
-  uint32_t to;
-  Bytes bytes;
-};
-/// Says that actuators and streams get what the program's store says when the step is over; no write may take
-/// effect after `until`.
-struct Act {
-  Place at;
-  Time until;
-};
-/// Says that the robot no longer acts: its fallback takes over.
-struct FallBack {};
-/// Tells what happened, for records and reports.
-struct Contributed {
-  Place at;
-  Bytes payload;
-};
-struct Stored {
-  Place at;
-  uint64_t digest;
-};
-struct Committed {
-  Place at;
-};
-struct Adopted {
-  Decision decision;
-};
-/// Names what must not happen, and did; the core goes no further.
-struct Broken {
-  const char* what;
-};
-using Output = std::variant<Send, Act, FallBack, Contributed, Stored, Committed, Adopted, Broken>;
 
 /// Keeps records where a crash cannot reach them.
 class Disk {
@@ -94,7 +58,7 @@ class Core {
 
   /// Takes a datagram, or none (time went on), at a moment that is not before the last one, and appends what
   /// is to be done, in order.
-  void Step(Time now, View datagram, std::vector<Output>& outputs);
+  void Step(Time now, View datagram, Outputs& outputs);
   /// Returns when to come back, if no datagram comes before.
   Time wake() const { return wake_; }
 
@@ -118,7 +82,7 @@ class Core {
     Time last = 0;
     Place at;
     bool holds = false, counts = false;
-    bool began = false;  // it committed that store, and has begun the round
+    bool final = false;  // it committed that store
   };
 
   // core.cc
@@ -129,6 +93,8 @@ class Core {
   void Wake();
   void On(Member from, const codec::Status& status);
   void On(Member from, const codec::Part& part);
+  void SeeFinal(Place at);
+  void Unpack(const codec::Part& part);
   void On(Member from, const codec::Prepare& prepare);
   void On(Member from, const codec::Promise& promise);
   void On(Member from, const codec::Accept& accept);
@@ -142,7 +108,9 @@ class Core {
 
   // round.cc
   void Begin();
+  bool Acceptable(uint32_t robot, View frame);
   void TryMerge();
+  void PassOn();
   void StoreNow();
   void TryCommit();
   void EndLease();
@@ -181,7 +149,7 @@ class Core {
   Program* program_;
   Disk* disk_;
   Time now_ = 0;
-  std::vector<Output>* outputs_ = nullptr;
+  Outputs* outputs_ = nullptr;
   Time wake_ = 0;
   Phase phase_ = Phase::kOutside;
   bool started_ = false;
@@ -190,11 +158,13 @@ class Core {
   std::optional<Decision> decision_;       // of the present epoch
   std::vector<uint32_t> members_;          // robots, in order
   int rank_ = -1;                          // among the members
+  std::optional<uint32_t> collector_, counter_;
   Place place_;                            // where the protocol is
   Place held_;                             // the store that the program has
   Bytes store_;                            // that store
   uint64_t digest_ = 0;                    // of that
   std::vector<Assembly> frames_, before_;  // by member: of this round, and of the one before
+  Assembly bundle_;                        // the frames of all, on their way from or to the collector
   Assembly base_;                          // what is fetched
   Time round_start_ = 0, first_sent_ = 0;
   bool asked_in_epoch_ = false;  // a frame of this robot was sent in this epoch
@@ -224,6 +194,13 @@ class Core {
   bool wanted_ = false;
 
   std::array<uint64_t, 5> refused_{};
+
+  // Kept for their memory.
+  codec::Message message_;
+  Contribution checked_;
+  std::vector<Contribution> contributions_;
+  std::vector<rounds::Turn> turns_;
+  Bytes record_;
 };
 
 }  // namespace rondo::runtime::rounds

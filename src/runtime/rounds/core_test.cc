@@ -3,77 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
-#include <map>
-#include <memory>
 
-#include "runtime/rounds/adder_test.h"
+#include "runtime/rounds/fleet_test.h"
 
 namespace rondo::runtime::rounds {
 namespace {
 
-constexpr Time kMillisecond = 1'000'000;
 constexpr uint32_t kRobots = 3;
 
 Settings SettingsOf(uint32_t robot, uint64_t incarnation = 1) {
-  Settings settings;
-  settings.self = robot;
-  settings.robots = kRobots;
-  settings.incarnation = incarnation;
-  settings.on_loss = OnLoss::kEvict;
-  return settings;
+  return AdderFleet::SettingsOf(robot, kRobots, Exchange::kAllToAll, incarnation);
 }
-
-// Cores whose datagrams take a millisecond, if `lets` lets them through.
-class Trio {
- public:
-  Trio() {
-    for (uint32_t r = 0; r < kRobots; ++r) {
-      programs.push_back(std::make_unique<Adder>(r));
-      cores.push_back(std::make_unique<Core>(SettingsOf(r), *programs[r], nullptr, std::nullopt));
-    }
-  }
-  void Run(Time span) {
-    for (const Time end = now + span; now < end; now += kMillisecond) {
-      std::vector<std::pair<uint32_t, Bytes>> arriving;
-      std::swap(arriving, waiting);
-      for (uint32_t r = 0; r < kRobots; ++r) Step(r, {});
-      for (const auto& [to, bytes] : arriving) Step(to, bytes);
-    }
-  }
-  void Step(uint32_t robot, View datagram) {
-    std::vector<Output> outputs;
-    cores[robot]->Step(now, datagram, outputs);
-    for (const Output& output : outputs) {
-      if (const auto* send = std::get_if<Send>(&output)) {
-        for (uint32_t to = 0; to < kRobots; ++to) {
-          if (to != robot && (send->to == kAll || send->to == to) && lets(robot, to, send->bytes))
-            waiting.emplace_back(to, send->bytes);
-        }
-      }
-      if (const auto* stored = std::get_if<Stored>(&output)) {
-        const auto [it, fresh] = digests.emplace(stored->at, stored->digest);
-        EXPECT_EQ(it->second, stored->digest) << stored->at.round;
-      }
-      if (const auto* act = std::get_if<Act>(&output)) {
-        // What is acted on is what the program has when the step is over.
-        Bytes store;
-        programs[robot]->Save(store);
-        EXPECT_EQ(codec::Sum(store), digests.at(act->at)) << act->at.round;
-        ++acts;
-      }
-      EXPECT_FALSE(std::holds_alternative<Broken>(output));
-    }
-  }
-
-  std::vector<std::unique_ptr<Adder>> programs;
-  std::vector<std::unique_ptr<Core>> cores;
-  std::function<bool(uint32_t, uint32_t, View)> lets = [](uint32_t, uint32_t, View) { return true; };
-  std::vector<std::pair<uint32_t, Bytes>> waiting;
-  std::map<Place, uint64_t> digests;
-  Time now = 0;
-  int acts = 0;
-};
 
 bool IsStatus(View bytes) {
   codec::Message message;
@@ -82,7 +22,7 @@ bool IsStatus(View bytes) {
 }
 
 TEST(Core, RoundsGoOnAndAllAct) {
-  Trio trio;
+  AdderFleet trio(kRobots);
   trio.Run(1500 * kMillisecond);
   for (const auto& core : trio.cores) EXPECT_GE(core->place().round, 13U);
   EXPECT_GE(trio.acts, 3 * 13);
@@ -90,7 +30,7 @@ TEST(Core, RoundsGoOnAndAllAct) {
 }
 
 TEST(Core, WhoActsHasNotGoneOnWhenTheStepIsOver) {
-  Trio trio;
+  AdderFleet trio(kRobots);
   trio.Run(350 * kMillisecond);
   // Robot 0 hears what others do, but not that they have stored it; then it is behind, and catches up in one step.
   trio.lets = [](uint32_t, uint32_t to, View bytes) { return to != 0 || !IsStatus(bytes); };
@@ -99,7 +39,7 @@ TEST(Core, WhoActsHasNotGoneOnWhenTheStepIsOver) {
 }
 
 TEST(Core, WhatNobodyAcceptsIsASkip) {
-  Trio trio;
+  AdderFleet trio(kRobots);
   trio.programs[1]->foul = true;
   trio.Run(1500 * kMillisecond);
   for (const auto& core : trio.cores) EXPECT_GE(core->place().round, 13U);
@@ -110,21 +50,21 @@ TEST(Core, WhatNobodyAcceptsIsASkip) {
 // One core, and messages as others would send them.
 class OneCoreTest : public testing::Test {
  protected:
-  std::vector<Output> Hear(uint32_t from, codec::Body body, uint64_t incarnation = 1) {
+  Outputs Hear(uint32_t from, codec::Body body, uint64_t incarnation = 1) {
     Bytes bytes;
     codec::Encode({0, 0, {from, incarnation}, std::move(body)}, bytes);
-    std::vector<Output> outputs;
+    Outputs outputs;
     now_ += kMillisecond;
     core_.Step(now_, bytes, outputs);
     return outputs;
   }
-  static size_t CountStored(const std::vector<Output>& outputs) {
+  static size_t CountStored(const Outputs& outputs) {
     size_t count = 0;
     for (const Output& output : outputs) count += std::holds_alternative<Stored>(output) ? 1 : 0;
     return count;
   }
   template <typename Body>
-  static std::optional<Body> Sent(const std::vector<Output>& outputs) {
+  static std::optional<Body> Sent(const Outputs& outputs) {
     for (const Output& output : outputs) {
       const auto* send = std::get_if<Send>(&output);
       codec::Message message;
@@ -156,23 +96,23 @@ TEST_F(OneCoreTest, WhoPromisedStoresNothingMoreOfItsEpoch) {
   EXPECT_EQ(promise->newest, (Place{1, 0}));
   Bytes store;
   codec::Writer(store).Number(18);
-  const codec::Part part{{2, 3}, std::nullopt, codec::Sum(store), 0, 1, store};
+  const codec::Part part{codec::What::kStore, {2, 3}, std::nullopt, codec::Sum(store), 0, 1, store};
   EXPECT_EQ(CountStored(Hear(1, part)), 0U);
   EXPECT_EQ(core_.phase(), Phase::kFetching);
   // The decision sets it free.
   Hear(2, codec::Decided{{3, everybody_, {2, 3}, DigestOf(18)}});
-  EXPECT_EQ(CountStored(Hear(1, codec::Part{{3, 3}, std::nullopt, codec::Sum(store), 0, 1, store})), 1U);
+  EXPECT_EQ(CountStored(Hear(1, codec::Part{codec::What::kStore, {3, 3}, std::nullopt, codec::Sum(store), 0, 1, store})), 1U);
 }
 
 // A life that forgot the ballots of the one before makes others.
 TEST_F(OneCoreTest, AnswersToAnEarlierLifeDoNotCount) {
   Adder program(0);
   Core second(SettingsOf(0, 2), program, nullptr, std::nullopt);
-  std::vector<Output> outputs;
+  Outputs outputs;
   const auto hear = [&](uint32_t from, codec::Body body) {
     Bytes bytes;
     codec::Encode({0, 0, {from, 1}, std::move(body)}, bytes);
-    outputs.clear();
+    outputs.Clear();
     now_ += kMillisecond;
     second.Step(now_, bytes, outputs);
   };
@@ -200,7 +140,7 @@ TEST_F(OneCoreTest, WhoForgotVotesWhenItHasTheStore) {
   EXPECT_FALSE(Sent<codec::Promise>(Hear(2, codec::Prepare{5, {5, 2, 1}})).has_value());
   Bytes store;
   codec::Writer(store).Number(42);
-  EXPECT_EQ(CountStored(Hear(1, codec::Part{{4, 7}, std::nullopt, codec::Sum(store), 0, 1, store})), 1U);
+  EXPECT_EQ(CountStored(Hear(1, codec::Part{codec::What::kStore, {4, 7}, std::nullopt, codec::Sum(store), 0, 1, store})), 1U);
   EXPECT_TRUE(Sent<codec::Promise>(Hear(2, codec::Prepare{5, {5, 2, 1}})).has_value());
 }
 
@@ -221,7 +161,7 @@ TEST_F(OneCoreTest, ABaseIsWhatWasDecided) {
   Hear(1, codec::Decided{{4, everybody_, {3, 7}, DigestOf(42)}});
   Bytes store;
   codec::Writer(store).Number(41);
-  EXPECT_EQ(CountStored(Hear(1, codec::Part{{4, 7}, std::nullopt, codec::Sum(store), 0, 1, store})), 0U);
+  EXPECT_EQ(CountStored(Hear(1, codec::Part{codec::What::kStore, {4, 7}, std::nullopt, codec::Sum(store), 0, 1, store})), 0U);
   EXPECT_EQ(core_.phase(), Phase::kFetching);
 }
 
@@ -229,7 +169,7 @@ TEST(Core, WhoCannotBeIsHalted) {
   Adder program(0);
   Settings settings = SettingsOf(7);
   Core core(settings, program, nullptr, std::nullopt);
-  std::vector<Output> outputs;
+  Outputs outputs;
   core.Step(0, {}, outputs);
   ASSERT_EQ(outputs.size(), 1U);
   EXPECT_TRUE(std::holds_alternative<Broken>(outputs[0]));
@@ -247,7 +187,7 @@ TEST(Core, AFleetThatNeverBeganHalts) {
   Bytes store;
   program.Save(store);
   codec::Encode({0, 0, {1, 1}, codec::Decided{{1, everybody, {0, 0}, codec::Sum(store)}}}, bytes);
-  std::vector<Output> outputs;
+  Outputs outputs;
   core.Step(0, bytes, outputs);
   EXPECT_EQ(core.phase(), Phase::kStored);
   for (Time now = 0; now < 2000 * kMillisecond; now += kMillisecond) core.Step(now, {}, outputs);

@@ -53,10 +53,10 @@ bool Core::Wanted() const {
   bool reason = !decision_ || ((voter_.promised || phase_ == Phase::kFetching) && silent);
   if (decision_ && settings_.on_loss == OnLoss::kHalt) return false;
   for (uint32_t r = 0; decision_ && r < settings_.robots; ++r) reason = reason || MayJoin(r);
+  const bool lost = settings_.on_loss == OnLoss::kEvict && phase_ != Phase::kCommitted && silent;
+  if (!reason && !lost) return false;
   const std::vector<Member> all = Candidates();
-  if (settings_.on_loss == OnLoss::kEvict && phase_ != Phase::kCommitted)
-    reason = reason || (silent && decision_ && all != decision_->members);
-  if (!reason) return false;
+  if (!reason && decision_ && all == decision_->members) return false;
   const size_t candidates = all.size();
   if (!decision_ || settings_.on_loss == OnLoss::kWait) return candidates == settings_.robots;
   return Majority(static_cast<uint32_t>(candidates));
@@ -69,7 +69,7 @@ void Core::TryHalt() {
   if (Silence() < settings_.lease + settings_.patience) return;
   active_ = false;
   phase_ = Phase::kHalted;
-  outputs_->push_back(FallBack{});
+  outputs_->Add(FallBack{});
 }
 
 // Robots try one after the other, so that their attempts do not stop each other for ever.
@@ -217,7 +217,14 @@ void Core::Adopt(const Decision& decision) {
   place_ = {decision.epoch, decision.base.round};
   frames_.assign(members_.size(), {});
   before_.clear();
+  bundle_.Clear();
   base_.Clear();
+  collector_.reset();
+  counter_.reset();
+  if (rank_ >= 0) {
+    collector_ = settings_.parts.memory->Collector(decision.epoch, decision.members);
+    counter_ = settings_.parts.barrier->Counter(decision.epoch, decision.members);
+  }
   asked_in_epoch_ = false;
   // The leases of those who were left behind end first.
   const Time rest = settings_.lease + settings_.stop_time;
@@ -228,7 +235,7 @@ void Core::Adopt(const Decision& decision) {
   trial_.reset();
   wanted_ = false;
   give_way_until_ = 0;
-  outputs_->push_back(Adopted{decision});
+  outputs_->Add(Adopted{decision});
   Progress();
   if (rank_ < 0) {
     phase_ = Phase::kOutside;
@@ -260,7 +267,8 @@ void Core::TakePart() {
 
 void Core::KeepRecord() {
   if (disk_ == nullptr) return;
-  Bytes record;
+  Bytes& record = record_;
+  record.clear();
   codec::Writer w(record);
   w.Byte(kRecordVersion);
   w.Fixed(settings_.agreement);

@@ -18,10 +18,10 @@ void Encode(const Contribution& contribution, Bytes& out) {
   }
 }
 
-std::optional<Contribution> Decode(View bytes) {
+bool Decode(View bytes, Contribution& contribution) {
   Reader reader(bytes);
-  Contribution contribution;
   contribution.inputs = reader.Block(bytes.size());
+  contribution.alternatives.clear();
   const size_t count = reader.Number(kMostAlternatives);
   for (size_t i = 0; i < count && reader.ok(); ++i) {
     Alternative a;
@@ -30,27 +30,27 @@ std::optional<Contribution> Decode(View bytes) {
     a.effect = reader.Block(bytes.size());
     contribution.alternatives.push_back(a);
   }
-  if (!reader.Complete()) return std::nullopt;
-  return contribution;
+  return reader.Complete();
 }
 
-std::vector<Turn> Merge(uint64_t round, std::span<const uint32_t> robots,
-                        std::span<const Contribution> contributions) {
-  std::vector<Turn> turns;
-  turns.reserve(robots.size());
-  std::vector<uint32_t> locked;
+void Merge(uint64_t round, const Locks& locks, std::span<const uint32_t> robots,
+           std::span<const Contribution> contributions, std::vector<Turn>& turns) {
+  turns.clear();
   for (size_t i = 0; i < robots.size(); ++i) {
-    const size_t k = (round + i) % robots.size();
+    const size_t k = locks.Who(round, i, robots.size());
+    const auto taken = [&](uint32_t event) {
+      return std::ranges::any_of(turns, [&](const Turn& other) {
+        return other.does != nullptr && other.does->locks && other.does->event == event;
+      });
+    };
     Turn turn{robots[k], contributions[k].inputs, nullptr};
     for (const Alternative& a : contributions[k].alternatives) {
-      if (a.locks && std::ranges::find(locked, a.event) != locked.end()) continue;
-      if (a.locks) locked.push_back(a.event);
+      if (a.locks && taken(a.event)) continue;
       turn.does = &a;
       break;
     }
     turns.push_back(turn);
   }
-  return turns;
 }
 
 }  // namespace rondo::runtime::rounds

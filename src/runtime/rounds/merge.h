@@ -1,8 +1,8 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
+#include "runtime/rounds/parts.h"
 #include "runtime/rounds/program.h"
 
 /// Makes one round out of what each robot wants to do.
@@ -16,15 +16,16 @@ struct Contribution {
 
 constexpr size_t kMostAlternatives = 4096;
 
-/// Writes and reads contributions. What was read points into the bytes; nothing if they are malformed.
+/// Writes and reads contributions. What was read points into the bytes; returns false, with part of it in
+/// `contribution`, if they are malformed.
 void Encode(const Contribution& contribution, Bytes& out);
-std::optional<Contribution> Decode(View bytes);
+bool Decode(View bytes, Contribution& contribution);
 
-/// Gives every robot its turn: the order begins with another robot in each round, and who comes first gets
-/// the lock of an event. So one order of the robots explains all locks, and all writes if they are applied in
-/// this order; and who wants a lock in every round waits for as many rounds as there are robots at most.
+/// Gives every robot its turn, in the order that `locks` says; who comes first gets the lock of an event. So one order
+/// of the robots explains all locks, and all writes if they are applied in this order.
 /// @param robots  who takes part, in increasing order; `contributions` are theirs, and must outlive the turns.
-std::vector<Turn> Merge(uint64_t round, std::span<const uint32_t> robots,
-                        std::span<const Contribution> contributions);
+/// @param turns  gets one for each robot, in place of what it held.
+void Merge(uint64_t round, const Locks& locks, std::span<const uint32_t> robots,
+           std::span<const Contribution> contributions, std::vector<Turn>& turns);
 
 }  // namespace rondo::runtime::rounds

@@ -24,6 +24,7 @@ codec::Status Core::MyStatus(bool asks, bool forwards) const {
   status.counts = status.holds && !disk_failed_;
   status.asks = asks;
   status.forwards = forwards;
+  status.final = rank_ >= 0 && (phase_ == Phase::kCommitted || phase_ == Phase::kCollecting);
   if (!status.holds) {
     base_.Missing(status.from, status.window);
   } else if (phase_ == Phase::kCollecting || attempt_ > 0) {
@@ -38,6 +39,17 @@ codec::Status Core::MyStatus(bool asks, bool forwards) const {
 }
 
 void Core::SendStatus() {
+  // What goes over one robot goes over it at first. Who hears nothing of it for long asks the others.
+  const auto& hub = phase_ == Phase::kCollecting ? collector_ : counter_;
+  if (hub && attempt_ == 0) {
+    if (hub != settings_.self) Post(*hub, MyStatus(false, false));
+    return;
+  }
+  const bool patient = !settings_.parts.memory->AsksOthers() && Silence() < settings_.patience / 2;
+  // One that began another life is in the middle of nothing.
+  const bool there = hub && hub != settings_.self && RankOf({*hub, peers_[*hub].incarnation}) >= 0;
+  if (there && phase_ != Phase::kFetching && (attempt_ < 2 || patient))
+    return Post(*hub, MyStatus(true, phase_ == Phase::kCollecting));
   Post(kAll, MyStatus(attempt_ > 0, false));
   // Whose sender is silent may be with somebody else; one is asked after the other.
   if (attempt_ == 0 || settings_.robots == 1 || rank_ < 0) return;
@@ -63,7 +75,7 @@ void Core::Serve(Member from, const codec::Status& status) {
   if (decision_ && status.at.epoch == Epoch() && rank_ >= 0) {
     if (!status.holds) {
       if (status.forwards && status.at == place_ && held_ == place_) {
-        ForParts(place_, std::nullopt, store_, status.from, status.window,
+        ForParts(codec::What::kStore, place_, std::nullopt, store_, status.from, status.window,
                  [&](const codec::Part& part) { Post(from.robot, part); });
       }
     } else if (status.at == place_) {
@@ -83,7 +95,7 @@ void Core::SendFrames(uint32_t to, const std::vector<Assembly>& frames, Place at
     const bool window = std::exchange(first, false);
     const bool mine = static_cast<int>(k) == rank_;
     if (!frames[k].complete() || (!mine && !status.forwards)) continue;
-    ForParts(at, decision_->members[k], frames[k].whole(), window ? status.from : 0,
+    ForParts(codec::What::kFrame, at, decision_->members[k], frames[k].whole(), window ? status.from : 0,
              window ? status.window : UINT64_MAX, [&](const codec::Part& part) { Post(to, part); });
   }
 }

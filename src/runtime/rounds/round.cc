@@ -9,21 +9,22 @@ void Core::Begin() {
   round_start_ = first_sent_ = now_;
   asked_in_epoch_ = true;
   phase_ = Phase::kCollecting;
-  Bytes payload;
-  program_->Contribute(place_.round, payload);
+  Bytes& frame = frames_[static_cast<size_t>(rank_)].Make();
+  program_->Contribute(place_.round, frame);
   // What others would refuse must not be merged here alone: then the robot does nothing.
-  const auto mine = Decode(View(payload));
-  if (!mine || !program_->Accepts(settings_.self, mine->inputs, mine->alternatives)) {
-    ++refused_[static_cast<size_t>(codec::Refused::kMalformed)];
-    payload.clear();
-    Encode(Contribution(), payload);
+  if (!Acceptable(settings_.self, View(frame))) {
+    frame.clear();
+    Encode(Contribution(), frame);
   }
-  outputs_->push_back(Contributed{place_, payload});
-  frames_[static_cast<size_t>(rank_)].Set(std::move(payload));
+  Contributed said{place_, outputs_->Empty()};
+  said.payload.assign(frame.begin(), frame.end());
+  outputs_->Add(std::move(said));
   Progress();
   const Member self{settings_.self, settings_.incarnation};
-  ForParts(place_, self, frames_[static_cast<size_t>(rank_)].whole(), 0, UINT64_MAX,
-           [&](const codec::Part& part) { Post(kAll, part); });
+  const uint32_t to = collector_.value_or(kAll);
+  if (to != settings_.self)
+    ForParts(codec::What::kFrame, place_, self, frame, 0, UINT64_MAX,
+             [&](const codec::Part& part) { Post(to, part); });
   TryMerge();
 }
 
@@ -32,13 +33,34 @@ void Core::TryMerge() {
   if (!std::ranges::all_of(frames_, [](const Assembly& f) { return f.complete(); })) return;
   // Who promised to decide on the next epoch stores nothing more in this one: the decision may not know it.
   if (voter_.promised) return;
-  std::vector<Contribution> contributions;
-  for (const Assembly& frame : frames_) contributions.push_back(*Decode(View(frame.whole())));
-  program_->Apply(place_.round, Merge(place_.round, members_, contributions));
-  before_ = std::move(frames_);
-  frames_.assign(members_.size(), {});
+  if (collector_ == settings_.self) PassOn();
+  contributions_.resize(frames_.size());
+  for (size_t k = 0; k < frames_.size(); ++k) Decode(View(frames_[k].whole()), contributions_[k]);
+  Merge(place_.round, *settings_.parts.locks, members_, contributions_, turns_);
+  program_->Apply(place_.round, turns_);
+  std::swap(before_, frames_);
+  frames_.resize(members_.size());
+  for (Assembly& frame : frames_) frame.Clear();
+  bundle_.Clear();
   ++place_.round;
   StoreNow();
+}
+
+// Sends the frames of all to all.
+void Core::PassOn() {
+  if (settings_.robots == 1) return;
+  codec::Bytes& all = bundle_.Make();
+  codec::Writer writer(all);
+  for (const Assembly& frame : frames_) writer.Block(frame.whole());
+  ForParts(codec::What::kFrames, place_, std::nullopt, all, 0, UINT64_MAX,
+           [&](const codec::Part& part) { Post(kAll, part); });
+}
+
+// Is this what a member can say? Counts it if it is not.
+bool Core::Acceptable(uint32_t robot, View frame) {
+  if (Decode(frame, checked_) && program_->Accepts(robot, checked_.inputs, checked_.alternatives)) return true;
+  ++refused_[static_cast<size_t>(codec::Refused::kMalformed)];
+  return false;
 }
 
 void Core::StoreNow() {
@@ -48,7 +70,7 @@ void Core::StoreNow() {
   digest_ = codec::Sum(store_);
   phase_ = Phase::kStored;
   KeepRecord();
-  outputs_->push_back(Stored{place_, digest_});
+  outputs_->Add(Stored{place_, digest_});
   Progress();
   SendStatus();
   TryCommit();
@@ -58,27 +80,28 @@ void Core::StoreNow() {
 void Core::TryCommit() {
   if (phase_ != Phase::kStored || now_ < not_before_) return;
   uint32_t count = disk_failed_ ? 0 : 1;
-  bool began = false;
+  bool final = false;
   for (const Peer& peer : peers_) {
     if (peer.at.epoch != place_.epoch || peer.at.round < place_.round) continue;
     if (peer.holds && peer.counts) ++count;
-    began = began || peer.began || peer.at.round > place_.round;
+    final = final || peer.final || peer.at.round > place_.round;
   }
-  if (!began && !Majority(count)) return;
+  if (!final && !Majority(count)) return;
   phase_ = Phase::kCommitted;
-  outputs_->push_back(Committed{place_});
+  outputs_->Add(Committed{place_});
   Progress();
+  if (counter_ == settings_.self && settings_.robots > 1) Post(kAll, MyStatus(false, false));
   // The answer is to a frame that was sent in this epoch: those who decide on the next one know when.
   if (asked_in_epoch_) lease_end_ = std::max(lease_end_, first_sent_ + settings_.lease);
   if (!asked_in_epoch_ || now_ >= lease_end_) return;
   active_ = acted_ = true;
-  outputs_->push_back(Act{place_, lease_end_});
+  outputs_->Add(Act{place_, lease_end_});
 }
 
 void Core::EndLease() {
   if (!active_ || now_ < lease_end_) return;
   active_ = false;
-  outputs_->push_back(FallBack{});
+  outputs_->Add(FallBack{});
   if (settings_.on_loss == OnLoss::kHalt) phase_ = Phase::kHalted;
 }
 

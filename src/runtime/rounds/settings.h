@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "runtime/rounds/parts.h"
+
 /// What the round protocol has to know about a robot and its fleet.
 namespace rondo::runtime::rounds {
 
@@ -38,6 +40,7 @@ struct Settings {
   uint64_t agreement = 0;    ///< sum of program, parameters, fleet and version: what all must have in common
   uint64_t session = 0;
   OnLoss on_loss = OnLoss::kHalt;
+  Parts parts = PartsOf(Exchange::kAllToAll);
   Time delta = 100'000'000;      ///< from the start of a round to that of the next, at least
   Time lease = 500'000'000;      ///< how long a robot acts after the sending of a frame that was answered
   Time stop_time = 100'000'000;  ///< from the end of a lease until the robot is at rest, or falls back

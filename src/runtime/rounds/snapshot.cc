@@ -59,6 +59,7 @@ void Core::Describe(Bytes& out) const {
   for (const Assembly& frame : frames_) frame.Describe(w);
   w.Byte(0xfe);
   for (const Assembly& frame : before_) frame.Describe(w);
+  bundle_.Describe(w);
   base_.Describe(w);
   behind(round_start_, settings_.delta);
   behind(first_sent_, settings_.lease);
@@ -67,7 +68,7 @@ void Core::Describe(Bytes& out) const {
   for (const Peer& peer : peers_) {
     w.Number(peer.incarnation);
     w.Byte(static_cast<uint8_t>((peer.heard ? 1 : 0) | (peer.holds ? 2 : 0) | (peer.counts ? 4 : 0) |
-                                (peer.began ? 8 : 0)));
+                                (peer.final ? 8 : 0)));
     behind(peer.last, settings_.patience + 1);
     codec::Write(w, peer.at);
   }

@@ -4,6 +4,7 @@
 
 namespace rondo::sim::campaign {
 
+using koord::semantics::Answer;
 using koord::semantics::Layout;
 using koord::semantics::Word;
 using lang::TypeKind;
@@ -15,7 +16,7 @@ constexpr size_t kMostItems = 3;
 
 }  // namespace
 
-bool AnyFunctions::Call(size_t f, size_t robot, std::span<const Word> arguments, std::span<Word> result) {
+uint64_t AnyFunctions::Number(size_t f, size_t robot, std::span<const Word> arguments) const {
   const koord::Function& function = team_.model().functions[f];
   runtime::codec::Bytes bytes;
   runtime::codec::Writer writer(bytes);
@@ -28,12 +29,16 @@ bool AnyFunctions::Call(size_t f, size_t robot, std::span<const Word> arguments,
                              writer);
     at += width;
   }
-  uint64_t random = runtime::codec::Sum(bytes);
+  return runtime::codec::Sum(bytes);
+}
+
+Answer AnyFunctions::Call(size_t f, size_t robot, std::span<const Word> arguments, std::span<Word> result) {
+  uint64_t random = Number(f, robot, arguments);
   std::vector<Word> words;
-  Make(function.result, random, words, 0);
-  if (words.size() != result.size()) return false;
+  Make(team_.model().functions[f].result, random, words, 0);
+  if (words.size() != result.size()) return Answer::kNone;
   std::ranges::copy(words, result.begin());
-  return true;
+  return Answer::kValue;
 }
 
 void AnyFunctions::Make(lang::TypeId id, uint64_t& random, std::vector<Word>& words, int level) {

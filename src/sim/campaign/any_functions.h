@@ -12,8 +12,10 @@ class AnyFunctions final : public koord::semantics::Host {
  public:
   explicit AnyFunctions(koord::semantics::Team& team) : team_(team) {}
 
-  bool Call(size_t f, size_t robot, std::span<const koord::semantics::Word> arguments,
-            std::span<koord::semantics::Word> result) override;
+  koord::semantics::Answer Call(size_t f, size_t robot, std::span<const koord::semantics::Word> arguments,
+                                std::span<koord::semantics::Word> result) override;
+  /// Returns a number for a call: the same for the same function, robot and values, whatever the heap.
+  uint64_t Number(size_t f, size_t robot, std::span<const koord::semantics::Word> arguments) const;
   void Log(size_t, size_t, std::span<const koord::semantics::Word>) override {}
 
  private:

@@ -3,23 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 
 namespace rondo::sim::campaign {
 
-std::string Failure::What() const {
+std::string Trial::What() const {
   if (!findings.empty()) return findings.front().text;
   return other;
 }
 
-std::optional<Failure> Try(Fleet& fleet, koord::semantics::Team& team, const Scenario& scenario,
-                           CampaignReport* report) {
+Trial Try(Fleet& fleet, koord::semantics::Team& team, const Scenario& scenario, CampaignReport* report) {
   Outcome outcome = fleet.Run(scenario);
   // Whatever decides a run is in the scenario.
   const bool same = fleet.Run(scenario).digest == outcome.digest;
   history::Judge judge(team);
+  const auto begin = std::chrono::steady_clock::now();
   std::vector<history::Finding> findings = judge.Check(outcome.record);
   if (report != nullptr) {
     ++report->runs;
+    report->judging += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     report->rounds += judge.rounds();
     report->datagrams += outcome.datagrams;
     report->recovery = std::max(report->recovery, outcome.recovery);
@@ -28,26 +30,25 @@ std::optional<Failure> Try(Fleet& fleet, koord::semantics::Team& team, const Sce
   }
   std::string other = !outcome.broken.empty() ? outcome.broken : outcome.stuck;
   if (!same) other = "the same run ends differently each time";
-  if (findings.empty() && other.empty()) return std::nullopt;
-  return Failure{scenario, std::move(findings), std::move(other), std::move(outcome)};
+  return Trial{scenario, std::move(findings), std::move(other), std::move(outcome)};
 }
 
 namespace {
 
 // Do two runs fail for the same reason?
-bool Alike(const Failure& a, const Failure& b) {
+bool Alike(const Trial& a, const Trial& b) {
   if (a.findings.empty() != b.findings.empty()) return false;
   return a.findings.empty() || a.findings.front().wrong == b.findings.front().wrong;
 }
 
 }  // namespace
 
-Failure Shrink(Fleet& fleet, koord::semantics::Team& team, Failure failure, const base::StopToken& stop) {
+Trial Shrink(Fleet& fleet, koord::semantics::Team& team, Trial failure, const base::StopToken& stop) {
   const auto accept = [&](const Scenario& smaller) {
     if (stop.StopRequested()) return false;
-    auto other = Try(fleet, team, smaller);
-    if (!other || !Alike(failure, *other)) return false;
-    failure = std::move(*other);
+    Trial other = Try(fleet, team, smaller);
+    if (!other.failed() || !Alike(failure, other)) return false;
+    failure = std::move(other);
     return true;
   };
   bool again = true;
@@ -86,10 +87,11 @@ CampaignReport Search(Fleet& fleet, const Fleet::MakeTeam& make, const CampaignO
     if (judges.size() <= scenario.robots) judges.resize(scenario.robots + 1);
     auto& judge = judges[scenario.robots];
     if (judge == nullptr) judge = make(scenario.robots);
-    auto failure = Try(fleet, *judge, scenario, &report);
-    if (failure) {
+    Trial trial = Try(fleet, *judge, scenario, &report);
+    if (options.each) options.each(trial, *judge);
+    if (trial.failed()) {
       report.failure =
-          options.shrink ? Shrink(fleet, *judge, std::move(*failure), options.stop) : std::move(*failure);
+          options.shrink ? Shrink(fleet, *judge, std::move(trial), options.stop) : std::move(trial);
       break;
     }
     if (options.progress) options.progress(i + 1);
@@ -97,10 +99,10 @@ CampaignReport Search(Fleet& fleet, const Fleet::MakeTeam& make, const CampaignO
   return report;
 }
 
-std::string Story(const Failure& failure) {
+std::string Story(const Trial& failure) {
   const Scenario& s = failure.scenario;
-  std::string text = fmt::format("{} robots, on_loss = \"{}\", {} disks, seed {}\n", s.robots,
-                                 Name(s.on_loss), s.disks ? "with" : "without", s.seed);
+  std::string text = fmt::format("{} robots, on_loss = \"{}\", exchange = \"{}\", {} disks, seed {}\n", s.robots,
+                                 Name(s.on_loss), Name(s.exchange), s.disks ? "with" : "without", s.seed);
   for (const Fault& fault : s.faults) text += "  " + Tell(fault) + "\n";
   if (!failure.other.empty()) text += failure.other + "\n";
   constexpr size_t kMost = 5, kAround = 12;

@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "koord/node/compiled_test.h"
+#include "sim/campaign/any_functions.h"
 
 namespace rondo::sim::campaign {
 namespace {
@@ -27,8 +28,14 @@ uint64_t Runs() {
 class CampaignTest : public testing::Test {
  protected:
   CampaignTest() : program_(base::ReadFile("src/sim/campaign/testdata/fleet.koord").value()) {}
+  std::unique_ptr<koord::semantics::Team> Team(size_t robots) {
+    auto team = program_.Team(robots);
+    functions_.push_back(std::make_unique<AnyFunctions>(*team));
+    team->machine().SetHost(functions_.back().get());
+    return team;
+  }
   Fleet::MakeTeam Make() {
-    return [this](size_t robots) { return program_.Team(robots); };
+    return [this](size_t robots) { return Team(robots); };
   }
   // A run without faults.
   Outcome Calm(size_t robots, OnLoss on_loss = OnLoss::kWait) {
@@ -39,11 +46,12 @@ class CampaignTest : public testing::Test {
     return fleet_.Run(scenario);
   }
   std::vector<history::Finding> Judged(const history::Record& record) {
-    const auto team = program_.Team(record.robots);
+    const auto team = Team(record.robots);
     return history::Judge(*team).Check(record);
   }
 
   koord::node::Compiled program_;
+  std::vector<std::unique_ptr<AnyFunctions>> functions_;
   Fleet fleet_{Make()};
 };
 
@@ -93,6 +101,49 @@ TEST_F(CampaignTest, APartitionHaltsWaitsOrEvicts) {
     else
       EXPECT_GE(outcome.rounds, 40U);
   }
+}
+
+// Who waits for a function lets rounds go on without it, also where its event is urgent.
+TEST_F(CampaignTest, ASlowPlannerIsASkip) {
+  Scenario scenario;
+  scenario.robots = 3;
+  scenario.rounds = 30;
+  scenario.faults = {{FaultKind::kPlanner, 0, 2'900'000'000, 1, 0, 0.25}};
+  const Outcome slow = fleet_.Run(scenario);
+  EXPECT_EQ(Judged(slow.record).size(), 0U);
+  EXPECT_EQ(slow.stuck, "");
+  EXPECT_LT(slow.time, 3'400'000'000);
+  size_t waits = 0;
+  for (const history::Entry& e : slow.record.entries) waits += e.waits ? 1 : 0;
+  EXPECT_GT(waits, 3U);
+  // Without that word, the judge asks why it did nothing.
+  history::Record silent = slow.record;
+  for (history::Entry& e : silent.entries) e.waits = false;
+  EXPECT_GT(Judged(silent).size(), 0U);
+}
+
+TEST_F(CampaignTest, ASlowRobotSlowsTheFleet) {
+  Scenario scenario;
+  scenario.robots = 4;
+  scenario.faults = {{FaultKind::kSlow, 500'000'000, 1'500'000'000, 2, 0, 0.02}};
+  const Outcome outcome = fleet_.Run(scenario);
+  EXPECT_EQ(Judged(outcome.record).size(), 0U);
+  EXPECT_EQ(outcome.stuck, "");
+}
+
+// Nothing that is decided depends on clocks that can be set.
+TEST_F(CampaignTest, ClocksOnTheWallMaySayWhatTheyLike) {
+  Scenario scenario;
+  scenario.faults = {{FaultKind::kCrash, 700'000'000, 500'000'000, 1, 0, 0},
+                     {FaultKind::kClock, 0, 2'000'000'000, 0, 0, 0}};
+  const Outcome one = fleet_.Run(scenario);
+  scenario.faults[1].amount = -3600;
+  const Outcome other = fleet_.Run(scenario);
+  EXPECT_EQ(one.digest, other.digest);
+  bool differs = false;
+  for (size_t i = 0; i < one.record.entries.size(); ++i)
+    differs = differs || one.record.entries[i].stamp != other.record.entries[i].stamp;
+  EXPECT_TRUE(differs);
 }
 
 // A robot that can keep nothing must not make the attempts of others come to nothing.

@@ -5,8 +5,11 @@
 #include <numeric>
 #include <random>
 
+#include "base/mixed.h"
+
 namespace rondo::sim::campaign {
 
+using runtime::rounds::Exchange;
 using runtime::rounds::OnLoss;
 
 namespace {
@@ -59,6 +62,9 @@ Scenario Draw(uint64_t seed, size_t least, size_t most) {
   // With two robots there is no majority without the other.
   s.on_loss = static_cast<OnLoss>(below(s.robots == 2 ? 2 : 3));
   s.disks = below(2) == 0;
+  // Half of the runs over one robot, without a change to what else happens in them.
+  const uint64_t way = base::Mixed(seed) % 4;
+  if (way > 1) s.exchange = way == 2 ? Exchange::kSequencer : Exchange::kCentral;
   const Time time = s.delta * static_cast<Time>(s.rounds) * 2 / 3;
   if (s.robots >= 3 && below(6) == 0) {
     Conspire(s, random);
@@ -79,7 +85,7 @@ Scenario Draw(uint64_t seed, size_t least, size_t most) {
     constexpr FaultKind kLives[] = {FaultKind::kCrash, FaultKind::kForget, FaultKind::kPause,
                                     FaultKind::kDiskFull};
     f.kind = storm ? kLives[below(std::size(kLives))]
-                   : static_cast<FaultKind>(below(static_cast<uint64_t>(FaultKind::kDiskFull) + 1));
+                   : static_cast<FaultKind>(below(cores::kFaultKinds));
     f.at = storm ? from + static_cast<Time>(below(700'000'000))
                  : static_cast<Time>(below(static_cast<uint64_t>(time)));
     const uint64_t longest = storm ? 60'000'000 : below(2) == 0 ? 200'000'000 : 2'000'000'000;
@@ -87,6 +93,8 @@ Scenario Draw(uint64_t seed, size_t least, size_t most) {
     f.robot = static_cast<uint32_t>(below(s.robots));
     f.other = s.robots == 1 ? 0 : static_cast<uint32_t>((f.robot + 1 + below(s.robots - 1)) % s.robots);
     f.amount = static_cast<double>(below(50) + 1) / 100;
+    if (f.kind == FaultKind::kSlow) f.amount /= 50;
+    if (f.kind == FaultKind::kClock) f.amount = (below(2) == 0 ? -1 : 1) * 1000 * f.amount;
     if (f.kind == FaultKind::kDelay) f.amount /= below(2) == 0 ? 1 : 10;
     s.faults.push_back(f);
   }

@@ -18,6 +18,7 @@ struct Scenario {
   size_t robots = 3;
   uint64_t rounds = 30;  ///< after which a run ends
   runtime::rounds::OnLoss on_loss = runtime::rounds::OnLoss::kWait;
+  runtime::rounds::Exchange exchange = runtime::rounds::Exchange::kAllToAll;
   bool disks = false;
   Time delta = 100'000'000;
   Time lease = 400'000'000;
@@ -26,7 +27,7 @@ struct Scenario {
   std::vector<Fault> faults;
 };
 
-/// Makes a scenario from a number: size, policy, disks and up to eight faults in the time of its first
+/// Makes a scenario from a number: size, policy, exchange, disks and up to eight faults in the time of its first
 /// rounds. The same number gives the same scenario.
 /// @param least, most  how many robots there may be.
 Scenario Draw(uint64_t seed, size_t least, size_t most);

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "sim/cores/fault_file.h"
-#include "sim/fleet/on_loss.h"
+#include "sim/fleet/round_words.h"
 #include "sim/fleet/tables.h"
 
 namespace rondo::sim::campaign {
@@ -33,13 +33,14 @@ class Reader : Tables {
   Scenario Read(const toml::table& t) {
     Known(
         t,
-        {"seed", "robots", "rounds", "on_loss", "disks", "delta", "lease", "stop_time", "patience", "fault"},
+        {"seed", "robots", "rounds", "on_loss", "exchange", "disks", "delta", "lease", "stop_time", "patience", "fault"},
         "a scenario");
     Scenario s;
     s.seed = Whole(t, "seed", 1, 0, 9e15);
     s.robots = Whole(t, "robots", 3, 1, static_cast<double>(kMostRobots));
     s.rounds = Whole(t, "rounds", 30, 1, 1e6);
     s.on_loss = ReadOnLoss(*this, t, s.on_loss, s.robots);
+    s.exchange = ReadExchange(*this, t, s.exchange);
     s.disks = Flag(t, "disks", false);
     const auto seconds = [&](const char* name, Time usual) {
       return cores::Nanoseconds(Number(t, name, static_cast<double>(usual) * 1e-9, 1e-3, 1e4));
@@ -75,9 +76,9 @@ std::string WriteScenario(const Scenario& s, const std::string& comment) {
   std::istringstream lines(comment);
   for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
   text += fmt::format(
-      "[[scenario]]\nseed = {}\nrobots = {}\nrounds = {}\non_loss = \"{}\"\ndisks = {}\ndelta = {:.9f}\nlease = {:.9f}\n"
+      "[[scenario]]\nseed = {}\nrobots = {}\nrounds = {}\non_loss = \"{}\"\nexchange = \"{}\"\ndisks = {}\ndelta = {:.9f}\nlease = {:.9f}\n"
       "stop_time = {:.9f}\npatience = {:.9f}\n",
-      s.seed, s.robots, s.rounds, Name(s.on_loss), s.disks, cores::Seconds(s.delta), cores::Seconds(s.lease),
+      s.seed, s.robots, s.rounds, Name(s.on_loss), Name(s.exchange), s.disks, cores::Seconds(s.delta), cores::Seconds(s.lease),
       cores::Seconds(s.stop_time), cores::Seconds(s.patience));
   for (const Fault& f : s.faults) text += "\n[[scenario.fault]]\n" + cores::WriteFault(f);
   return text;

@@ -8,6 +8,7 @@
 
 #include "base/mixed.h"
 #include "sim/campaign/noise.h"
+#include "sim/campaign/slow_functions.h"
 #include "sim/cores/cores.h"
 
 namespace rondo::sim::campaign {
@@ -33,9 +34,18 @@ class World : cores::Robots {
     out_.record.robots = s_.robots;
     out_.record.lease = s_.lease;
     out_.record.stop_time = s_.stop_time;
-    for (size_t r = 0; r < s_.robots; ++r)
+    for (size_t r = 0; r < s_.robots; ++r) {
       noises_.push_back(std::make_unique<Noise>(*teams_[r], s_.seed, cores_.now()));
+      functions_.push_back(std::make_unique<SlowFunctions>(*teams_[r], *nodes_[r], cores_.now()));
+      teams_[r]->machine().SetHost(functions_.back().get());
+    }
   }
+
+  ~World() {
+    for (const auto& team : teams_) team->machine().SetHost(nullptr);
+  }
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
 
   Outcome Run() {
     cores_.Start();
@@ -55,6 +65,7 @@ class World : cores::Robots {
     setup.settings.robots = static_cast<uint32_t>(s.robots);
     setup.settings.agreement = setup.settings.session = s.seed;
     setup.settings.on_loss = s.on_loss;
+    setup.settings.parts = rounds::PartsOf(s.exchange);
     setup.settings.delta = s.delta;
     setup.settings.lease = s.lease;
     setup.settings.stop_time = s.stop_time;
@@ -71,7 +82,8 @@ class World : cores::Robots {
     const Time now = cores_.now();
     Mix(static_cast<uint64_t>(now) * 64 + static_cast<uint64_t>(kind));
     Mix(place.epoch * 1'000'003 + place.round * 257 + r);
-    out_.record.entries.push_back({kind, now, 0, r, cores_.incarnation(r), place.epoch, place.round, 0});
+    out_.record.entries.push_back(
+        {kind, now, 0, r, cores_.incarnation(r), place.epoch, place.round, 0, cores_.Wall(r)});
     return out_.record.entries.back();
   }
 
@@ -80,11 +92,13 @@ class World : cores::Robots {
   rounds::Program& Begin(uint32_t r) override {
     nodes_[r]->Reset(history::StateOf(*teams_[r], start_), s_.seed);
     nodes_[r]->SetSensors(noises_[r].get());
+    functions_[r]->Reset();
     Log(r, Kind::kStarted);
     if (cores_.incarnation(r) > 1) FallBack(r);  // what its actuators do after a crash, nobody knows
     return *nodes_[r];
   }
   void Crashed(uint32_t r) override { Log(r, Kind::kCrashed); }
+  void Slows(uint32_t r, Time delay) override { functions_[r]->SetDelay(delay); }
   void On(uint32_t r, const rounds::Output& output) override {
     std::visit([&](const auto& o) { Do(r, o); }, output);
   }
@@ -104,7 +118,9 @@ class World : cores::Robots {
     Log(r, Kind::kFellBack).what = sets ? image : history::kNothing;
   }
   void Do(uint32_t r, const rounds::Contributed& c) {
-    Log(r, Kind::kContributed, c.at).what = out_.record.texts.size();
+    history::Entry& entry = Log(r, Kind::kContributed, c.at);
+    entry.what = out_.record.texts.size();
+    entry.waits = nodes_[r]->waits();
     out_.record.texts.push_back(c.payload);
   }
   void Do(uint32_t r, const rounds::Stored& stored) {
@@ -172,6 +188,7 @@ class World : cores::Robots {
   std::vector<std::unique_ptr<koord::node::Node>>& nodes_;
   const history::Image& start_;  // before `init`
   std::vector<std::unique_ptr<Noise>> noises_;
+  std::vector<std::unique_ptr<SlowFunctions>> functions_;
   cores::Cores cores_;
   std::vector<uint64_t> committed_;  // by robot
   uint64_t base_ = 0;

@@ -99,7 +99,7 @@ void Cores::Handle(const Event& event) {
 
 void Cores::Step(uint32_t r, View datagram) {
   Life& life = lives_[r];
-  outputs_.clear();
+  outputs_.Clear();
   life.core->Step(life.clock.At(now_), datagram, outputs_);
   if (std::exchange(life.disk.fresh, false)) life.kept = life.core->place().epoch;
   known_ = known_ || life.core->place().epoch > 0;
@@ -109,6 +109,7 @@ void Cores::Step(uint32_t r, View datagram) {
     else
       robots_.On(r, output);
   }
+  if (life.step > 0) life.paused_until = std::max(life.paused_until, now_ + life.step);
   visited_.insert(static_cast<uint64_t>(life.phase) * kPhases + static_cast<uint64_t>(life.core->phase()));
   life.phase = life.core->phase();
   if (life.core->wake() == INT64_MAX) return;
@@ -179,6 +180,15 @@ void Cores::Let(const Fault& f, bool begins) {
       break;
     case FaultKind::kDiskFull:
       life.disk.full = begins;
+      break;
+    case FaultKind::kSlow:
+      life.step = begins ? Nanoseconds(f.amount) : 0;
+      break;
+    case FaultKind::kPlanner:
+      robots_.Slows(f.robot, begins ? Nanoseconds(f.amount) : 0);
+      break;
+    case FaultKind::kClock:
+      life.ahead += (begins ? 1 : -1) * Nanoseconds(f.amount);
       break;
   }
 }

@@ -35,6 +35,8 @@ class Robots {
   virtual runtime::rounds::Program& Begin(uint32_t robot) = 0;
   /// Says that a robot is gone, with everything that it had in mind.
   virtual void Crashed(uint32_t robot) = 0;
+  /// Says how long an external function of a robot takes from now on.
+  virtual void Slows(uint32_t, Time) {}
   /// Receives everything but `Send`, in order.
   virtual void On(uint32_t robot, const runtime::rounds::Output& output) = 0;
 };
@@ -61,6 +63,8 @@ class Cores {
   uint64_t incarnation(uint32_t robot) const { return lives_[robot].incarnation; }
   /// Returns the moment of virtual time at which a robot's clock says this.
   Time When(uint32_t robot, runtime::rounds::Time local) const { return lives_[robot].clock.When(local); }
+  /// Returns what the clock on a robot's wall says. Cores do not have it.
+  Time Wall(uint32_t robot) const { return now_ + lives_[robot].ahead; }
   /// Reports whether there was a session of which at some moment nobody and no disk knew any more. What begins
   /// then is another one.
   bool forgotten() const { return forgotten_; }
@@ -86,6 +90,8 @@ class Cores {
     MemoryDisk disk;
     uint64_t incarnation = 0;
     Time paused_until = 0;
+    Time step = 0;      // how long it needs for each
+    Time ahead = 0;     // of its clock on the wall
     uint64_t wake = 0;  // which of the wakes that are under way counts
     int crashes = 0;    // faults that keep it away
     uint64_t kept = 0;  // the epoch of which its disk knows
@@ -127,7 +133,7 @@ class Cores {
   bool known_ = false;  // somebody has known of a session
   bool forgotten_ = false;
   uint64_t digest_ = 0;
-  std::vector<runtime::rounds::Output> outputs_;
+  runtime::rounds::Outputs outputs_;
   std::vector<transport::simulated::Delivery> deliveries_;
   std::set<uint64_t> visited_;
 };

@@ -28,6 +28,12 @@ std::string_view Name(FaultKind kind) {
       return "pause";
     case FaultKind::kDiskFull:
       return "disk-full";
+    case FaultKind::kSlow:
+      return "slow";
+    case FaultKind::kPlanner:
+      return "planner";
+    case FaultKind::kClock:
+      return "clock";
   }
   return "";
 }
@@ -57,6 +63,12 @@ std::string Tell(const Fault& f) {
         return fmt::format("robot {} stands still", f.robot);
       case FaultKind::kDiskFull:
         return fmt::format("the disk of robot {} is full", f.robot);
+      case FaultKind::kSlow:
+        return fmt::format("robot {} needs {:.3g} s for each step", f.robot, f.amount);
+      case FaultKind::kPlanner:
+        return fmt::format("functions of robot {} take {:.3g} s", f.robot, f.amount);
+      case FaultKind::kClock:
+        return fmt::format("the wall clock of robot {} is {:.3g} s ahead", f.robot, f.amount);
     }
     return "";
   };

@@ -29,7 +29,11 @@ enum class FaultKind : uint8_t {
   kForget,     ///< a robot is gone, and comes back without its disk
   kPause,      ///< a robot stands still, and goes on as if nothing had been
   kDiskFull,   ///< the disk of a robot takes nothing
+  kSlow,       ///< a robot needs so long for each step, in seconds
+  kPlanner,    ///< what a robot asks an external function for the first time takes so long, in seconds
+  kClock,      ///< the clock on the wall of a robot is so far ahead, in seconds
 };
+constexpr size_t kFaultKinds = 14;
 std::string_view Name(FaultKind kind);
 
 /// Is one thing that goes wrong, from a moment on, for a while.

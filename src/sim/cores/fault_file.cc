@@ -9,7 +9,7 @@ namespace {
 
 std::vector<std::string> Kinds() {
   std::vector<std::string> names;
-  for (size_t k = 0; k <= static_cast<size_t>(FaultKind::kDiskFull); ++k)
+  for (size_t k = 0; k < kFaultKinds; ++k)
     names.emplace_back(Name(static_cast<FaultKind>(k)));
   return names;
 }
@@ -37,7 +37,10 @@ Fault ReadFault(Tables& tables, const toml::table& t, size_t robots, std::span<c
   f.length = Nanoseconds(tables.Number(t, "length", 0.1, 0, 1e6));
   f.robot = Robot(tables, t, "robot", robots, names);
   f.other = Robot(tables, t, "other", robots, names);
-  f.amount = tables.Number(t, "amount", 0, 0, f.kind == FaultKind::kDelay ? 1000 : 1);
+  const bool seconds =
+      f.kind == FaultKind::kDelay || f.kind == FaultKind::kSlow || f.kind == FaultKind::kPlanner;
+  const double most = f.kind == FaultKind::kClock ? 1e9 : seconds ? 1000 : 1;
+  f.amount = tables.Number(t, "amount", 0, f.kind == FaultKind::kClock ? -most : 0, most);
   return f;
 }
 

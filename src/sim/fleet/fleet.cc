@@ -6,7 +6,7 @@
 #include <set>
 
 #include "lang/suggest.h"
-#include "sim/fleet/on_loss.h"
+#include "sim/fleet/round_words.h"
 #include "sim/fleet/tables.h"
 
 namespace rondo::sim {
@@ -113,8 +113,9 @@ class Reader : Tables {
     rounds.lease = rounds.patience = 5 * fleet_.delta;
     rounds.stop_time = fleet_.delta;
     if (t == nullptr) return;
-    Known(*t, {"on_loss", "disks", "lease", "stop_time", "patience"}, "`rounds`");
+    Known(*t, {"on_loss", "exchange", "disks", "lease", "stop_time", "patience"}, "`rounds`");
     rounds.on_loss = ReadOnLoss(*this, *t, rounds.on_loss, fleet_.robots.size());
+    rounds.exchange = ReadExchange(*this, *t, rounds.exchange);
     rounds.disks = Flag(*t, "disks", false);
     rounds.lease = Number(*t, "lease", rounds.lease, 1e-3, 1e4);
     rounds.stop_time = Number(*t, "stop_time", rounds.stop_time, 0, 1e4);

@@ -56,6 +56,7 @@ enum class Until : uint8_t {
 /// Says how the robots keep together over a network (docs/runtime.md). Times in seconds.
 struct FleetRounds {
   runtime::rounds::OnLoss on_loss = runtime::rounds::OnLoss::kHalt;
+  runtime::rounds::Exchange exchange = runtime::rounds::Exchange::kAllToAll;  ///< who tells whom
   bool disks = false;      ///< robots keep what they store and promise where a crash cannot reach it
   double lease = 0.5;      ///< how long a robot acts after what was answered last
   double stop_time = 0.1;  ///< from the end of a lease until its fallback has taken over

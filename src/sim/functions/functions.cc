@@ -96,10 +96,11 @@ void Functions::Log(size_t robot, size_t type, std::span<const Word> value) {
   log_.emplace_back(robot, team_->ShowLogged(type, value));
 }
 
-bool Functions::Call(size_t f, size_t robot, std::span<const Word> a, std::span<Word> result) {
-  if (team_ == nullptr || !Knows(f)) return false;
+koord::semantics::Answer Functions::Call(size_t f, size_t robot, std::span<const Word> a,
+                                         std::span<Word> result) {
+  if (team_ == nullptr || !Knows(f)) return koord::semantics::Answer::kNone;
   (this->*known_[f])(robot, a, result);
-  return true;
+  return koord::semantics::Answer::kValue;
 }
 
 }  // namespace rondo::sim

@@ -24,7 +24,8 @@ class Functions final : public koord::semantics::Host {
   /// calls.
   void Attach(koord::semantics::Team& team, const std::vector<std::unique_ptr<Body>>& bodies);
 
-  bool Call(size_t f, size_t robot, std::span<const Word> arguments, std::span<Word> result) override;
+  koord::semantics::Answer Call(size_t f, size_t robot, std::span<const Word> arguments,
+                                std::span<Word> result) override;
   void Log(size_t robot, size_t type, std::span<const Word> value) override;
 
   /// Returns what robots wrote to streams since the last call: robot and text.

@@ -66,7 +66,7 @@ class External : public testing::Test {
   }
   std::vector<Word> Call(const std::string& name, const std::vector<Word>& arguments, size_t width = 1) {
     std::vector<Word> result(width);
-    EXPECT_TRUE(functions_->Call(Find(name), 0, arguments, result)) << name;
+    EXPECT_EQ(functions_->Call(Find(name), 0, arguments, result), koord::semantics::Answer::kValue) << name;
     return result;
   }
   Word Path(const std::vector<Point>& path) { return EncodePath(team_->heap(), path); }
@@ -102,7 +102,7 @@ TEST_F(External, FunctionsAreRecognisedByNameAndType) {
 
 TEST_F(External, AFunctionThatIsNotKnownHasNoValue) {
   std::vector<Word> result(1);
-  EXPECT_FALSE(functions_->Call(Find("far"), 0, {}, result));
+  EXPECT_EQ(functions_->Call(Find("far"), 0, {}, result), koord::semantics::Answer::kNone);
 }
 
 TEST_F(External, APathIsClearOfThoseOfOthers) {

@@ -25,21 +25,27 @@ class Hub::Way : public Transport {
       Mailbox& box = *hub_.mailboxes_[r];
       {
         const std::lock_guard lock(box.mutex);
-        if (box.waiting.size() == hub_.longest_) box.waiting.pop_front();
-        box.waiting.emplace_back(bytes.begin(), bytes.end());
+        const size_t longest = box.ring.size();
+        if (box.waiting == longest) {
+          box.first = (box.first + 1) % longest;
+          --box.waiting;
+        }
+        box.ring[(box.first + box.waiting++) % longest].assign(bytes.begin(), bytes.end());
       }
       box.arrived.notify_one();
     }
   }
 
-  std::optional<Bytes> Receive(Time until) override {
+  bool Receive(Time until, Bytes& datagram) override {
+    datagram.clear();
     Mailbox& box = *hub_.mailboxes_[robot_];
     std::unique_lock lock(box.mutex);
     const std::chrono::nanoseconds left(std::max<Time>(0, until - Now()));
-    if (!box.arrived.wait_for(lock, left, [&] { return !box.waiting.empty(); })) return std::nullopt;
-    Bytes bytes = std::move(box.waiting.front());
-    box.waiting.pop_front();
-    return bytes;
+    if (!box.arrived.wait_for(lock, left, [&] { return box.waiting > 0; })) return false;
+    std::swap(datagram, box.ring[box.first]);
+    box.first = (box.first + 1) % box.ring.size();
+    --box.waiting;
+    return true;
   }
 
  private:
@@ -47,8 +53,11 @@ class Hub::Way : public Transport {
   uint32_t robot_;
 };
 
-Hub::Hub(size_t robots, size_t longest) : longest_(longest) {
-  for (size_t r = 0; r < robots; ++r) mailboxes_.push_back(std::make_unique<Mailbox>());
+Hub::Hub(size_t robots, size_t longest) {
+  for (size_t r = 0; r < robots; ++r) {
+    mailboxes_.push_back(std::make_unique<Mailbox>());
+    mailboxes_.back()->ring.resize(longest);
+  }
 }
 
 std::unique_ptr<Transport> Hub::Connect(uint32_t robot) { return std::make_unique<Way>(*this, robot); }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <condition_variable>
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -26,11 +25,11 @@ class Hub {
   struct Mailbox {
     std::mutex mutex;
     std::condition_variable arrived;
-    std::deque<runtime::codec::Bytes> waiting;
+    std::vector<runtime::codec::Bytes> ring;  // keeps its memory
+    size_t first = 0, waiting = 0;
   };
 
   std::vector<std::unique_ptr<Mailbox>> mailboxes_;
-  size_t longest_;
 };
 
 }  // namespace rondo::transport::loopback

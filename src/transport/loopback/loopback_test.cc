@@ -31,8 +31,12 @@ TEST(Loopback, TheOldestGiveWay) {
   Hub hub(2, 3);
   const auto a = hub.Connect(0), b = hub.Connect(1);
   for (uint8_t i = 0; i < 5; ++i) a->Send(1, Bytes{i});
-  for (uint8_t i = 2; i < 5; ++i) EXPECT_EQ(b->Receive(b->Now()), Bytes{i});
-  EXPECT_EQ(b->Receive(b->Now()), std::nullopt);
+  Bytes datagram;
+  for (uint8_t i = 2; i < 5; ++i) {
+    EXPECT_TRUE(b->Receive(b->Now(), datagram));
+    EXPECT_EQ(datagram, Bytes{i});
+  }
+  EXPECT_FALSE(b->Receive(b->Now(), datagram));
 }
 
 // Threads, a real clock: all act on the same stores, one round after the other.

@@ -29,17 +29,18 @@ class Radio {
           radio_.network_->Send(radio_.now_, robot_, r, bytes, radio_.flying_);
       }
     }
-    std::optional<Bytes> Receive(runtime::rounds::Time until) override {
+    bool Receive(runtime::rounds::Time until, Bytes& datagram) override {
+      datagram.clear();
       auto first = radio_.flying_.end();
       for (auto it = radio_.flying_.begin(); it != radio_.flying_.end(); ++it) {
         if (it->to == robot_ && (first == radio_.flying_.end() || it->at < first->at)) first = it;
       }
       const bool comes = first != radio_.flying_.end() && first->at <= std::max(until, radio_.now_);
       radio_.now_ = std::max(radio_.now_, comes ? first->at : until);
-      if (!comes) return std::nullopt;
-      Bytes bytes = std::move(first->bytes);
+      if (!comes) return false;
+      datagram = std::move(first->bytes);
       radio_.flying_.erase(first);
-      return bytes;
+      return true;
     }
 
    private:

@@ -34,6 +34,7 @@ enum class Fault : uint8_t {
   kTooLong,   ///< a list or grid of more than a million items
   kTooMany,   ///< more choices of `any` than are followed
   kNoLock,    ///< no fault: another robot holds the lock of the event, which is a skip then
+  kNotYet,    ///< no fault: an external function is not finished, which is a skip then
   kLoop,      ///< a `while` that is repeated more often than it says
   kRunaway,   ///< more than a hundred million iterations and calls (`kMostSteps`)
 };

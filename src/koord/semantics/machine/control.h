@@ -52,8 +52,10 @@ RONDO_INSTRUCTION RunExternal(Registers& r, const Instruction& i) {
   r.m.buffer.assign(i.c, 0);
   std::vector<Word> result;
   result.swap(r.m.buffer);
-  const bool known = r.m.host != nullptr && r.m.host->Call(i.a, r.robot, {r.top, i.b}, result);
-  if (!known) RONDO_TOTAL(External);
+  const Answer answer =
+      r.m.host == nullptr ? Answer::kNone : r.m.host->Call(i.a, r.robot, {r.top, i.b}, result);
+  if (answer == Answer::kLater && !r.total) return Fault::kNotYet;
+  if (answer != Answer::kValue) RONDO_TOTAL(External);
   for (const Word w : result) *r.top++ = w;
   r.m.buffer.swap(result);
   return Fault::kNone;

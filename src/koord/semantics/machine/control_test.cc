@@ -11,11 +11,12 @@ using testing::ElementsAre;
 // Knows function 0, the sum of its arguments and the robot, and keeps what is logged.
 class Adder final : public Host {
  public:
-  bool Call(size_t f, size_t robot, std::span<const Word> arguments, std::span<Word> result) override {
-    if (f != 0) return false;
+  Answer Call(size_t f, size_t robot, std::span<const Word> arguments, std::span<Word> result) override {
+    if (f > 1) return Answer::kLater;
+    if (f != 0) return Answer::kNone;
     result[0] = robot;
     for (const Word a : arguments) result[0] += a;
-    return true;
+    return Answer::kValue;
   }
   void Log(size_t robot, size_t type, std::span<const Word> value) override {
     logged = {robot, type};
@@ -119,6 +120,11 @@ TEST_F(Control, AFunctionThatTheHostDoesNotKnowIsAFaultOrZero) {
   ASSERT_TRUE(Execute(call, 0, true));
   EXPECT_THAT(machine_->result(), ElementsAre(0, 0));
   EXPECT_TRUE(machine_->used_default());
+}
+
+TEST_F(Control, AFunctionThatIsNotFinishedIsASkip) {
+  EXPECT_FALSE(Execute({{Op::kConstant, 3}, {Op::kExternal, 2, 1, 1}, {Op::kEnd}}));
+  EXPECT_EQ(machine_->fault(), Fault::kNotYet);
 }
 
 TEST_F(Control, NoFunctionHasAValueWithoutAHost) {

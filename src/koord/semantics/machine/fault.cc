@@ -30,6 +30,8 @@ std::string_view Describe(Fault fault) {
       return "there are more than 100,000 ways to choose";
     case Fault::kNoLock:
       return "another robot holds the lock";
+    case Fault::kNotYet:
+      return "the function is not finished";
     case Fault::kLoop:
       return "the loop is repeated more often than it says";
     case Fault::kRunaway:

@@ -38,6 +38,21 @@ void Heap::Grow() {
   }
 }
 
+// An entry that is not in use and has room for so many words.
+size_t Heap::Free(size_t size) {
+  const size_t capacity = size == 0 ? 0 : std::bit_ceil(size);
+  std::vector<uint32_t>& free = free_[static_cast<size_t>(std::bit_width(capacity))];
+  if (!free.empty()) {
+    const size_t index = free.back();
+    free.pop_back();
+    return index;
+  }
+  Entry& entry = entries_.emplace_back();
+  entry.words = std::make_unique<Word[]>(capacity);
+  entry.capacity = static_cast<uint32_t>(capacity);
+  return entries_.size() - 1;
+}
+
 Word Heap::Intern(std::span<const Word> words) {
   const uint32_t hash = HashOf(words);
   size_t at = hash & (table_.size() - 1);
@@ -46,22 +61,14 @@ Word Heap::Intern(std::span<const Word> words) {
     if (e.hash == hash && e.size == words.size() && std::equal(words.begin(), words.end(), e.words.get()))
       return table_[at] - 1;
   }
-  Entry entry;
-  entry.words = std::make_unique<Word[]>(words.size());
+  const size_t index = Free(words.size());
+  Entry& entry = entries_[index];
   std::copy(words.begin(), words.end(), entry.words.get());
   entry.size = static_cast<uint32_t>(words.size());
   entry.hash = hash;
   entry.used = true;
   words_ += words.size() + 4;
   ++live_;
-  size_t index = entries_.size();
-  if (free_.empty()) {
-    entries_.push_back(std::move(entry));
-  } else {
-    index = free_.back();
-    free_.pop_back();
-    entries_[index] = std::move(entry);
-  }
   table_[at] = static_cast<uint32_t>(index + 1);
   if (live_ * 2 > table_.size()) Grow();
   return index;
@@ -69,8 +76,9 @@ Word Heap::Intern(std::span<const Word> words) {
 
 Word Heap::InternText(std::string_view text) {
   // The length first: a text may end in zero bytes.
-  std::vector<Word> words{text.size()};
   if (text.empty()) return 0;
+  std::vector<Word>& words = text_;
+  words.assign(1, text.size());
   for (size_t i = 0; i < text.size(); i += 8) {
     Word w = 0;
     std::memcpy(&w, text.data() + i, std::min<size_t>(8, text.size() - i));
@@ -93,8 +101,8 @@ void Heap::Sweep() {
     if (e.used && !e.marked) {
       words_ -= e.size + 4;
       --live_;
-      e = Entry{};
-      free_.push_back(static_cast<uint32_t>(i));
+      e.used = false;
+      free_[static_cast<size_t>(std::bit_width(e.capacity))].push_back(static_cast<uint32_t>(i));
     }
     e.marked = false;
   }

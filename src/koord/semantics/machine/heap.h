@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -44,7 +45,7 @@ class Heap {
   /// entries.
   void Mark(Word handle) { entries_[handle].marked = true; }
   bool marked(Word handle) const { return entries_[handle].marked; }
-  /// Frees every entry that is neither pinned nor marked, and clears all marks.
+  /// Frees every entry that is neither pinned nor marked, and clears all marks. Their memory serves new ones.
   void Sweep();
   /// Returns roughly how many words the entries take, so that owners can tell when to collect.
   size_t words_in_use() const { return words_; }
@@ -52,19 +53,22 @@ class Heap {
  private:
   struct Entry {
     std::unique_ptr<Word[]> words;
+    uint32_t capacity = 0;  // of `words`, which a freed entry keeps for the next one
     uint32_t size = 0;
     uint32_t hash = 0;
     bool marked = false;
     bool used = false;
   };
   void Grow();
+  size_t Free(size_t size);
 
   std::vector<Entry> entries_;
-  std::vector<uint32_t> free_;
+  std::array<std::vector<uint32_t>, 33> free_;  // by the width of their capacity
   std::vector<uint32_t> table_;  // open addressing: number of the entry + 1, or 0
   size_t pinned_ = 0;
   size_t live_ = 0;
   size_t words_ = 0;
+  std::vector<Word> text_;  // kept for its memory
 };
 
 }  // namespace rondo::koord::semantics

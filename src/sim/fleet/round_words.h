@@ -10,4 +10,8 @@ namespace rondo::sim {
 runtime::rounds::OnLoss ReadOnLoss(Tables& tables, const toml::table& table, runtime::rounds::OnLoss usual,
                                    size_t robots);
 
+/// Reads `exchange`: `all-to-all`, `sequencer` or `central`. Reports other words.
+runtime::rounds::Exchange ReadExchange(Tables& tables, const toml::table& table,
+                                       runtime::rounds::Exchange usual);
+
 }  // namespace rondo::sim

@@ -1,9 +1,10 @@
-#include "sim/fleet/on_loss.h"
+#include "sim/fleet/round_words.h"
 
 #include <algorithm>
 
 namespace rondo::sim {
 
+using runtime::rounds::Exchange;
 using runtime::rounds::OnLoss;
 
 OnLoss ReadOnLoss(Tables& tables, const toml::table& table, OnLoss usual, size_t robots) {
@@ -14,6 +15,14 @@ OnLoss ReadOnLoss(Tables& tables, const toml::table& table, OnLoss usual, size_t
   if (on_loss == OnLoss::kEvict && robots == 2 && node != nullptr)
     tables.Wrong(tables.At(*node), "two robots have no majority without each other, so none can be evicted");
   return on_loss;
+}
+
+Exchange ReadExchange(Tables& tables, const toml::table& table, Exchange usual) {
+  std::vector<std::string> words;
+  for (const Exchange e : {Exchange::kAllToAll, Exchange::kSequencer, Exchange::kCentral})
+    words.emplace_back(Name(e));
+  const std::string word = tables.Word(table, "exchange", std::string(Name(usual)), words);
+  return static_cast<Exchange>(std::ranges::find(words, word) - words.begin());
 }
 
 }  // namespace rondo::sim
