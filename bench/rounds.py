@@ -41,8 +41,8 @@ def barrier(robots, loss, rounds=4000):
     return [exchange(robots, loss, rng) + exchange(robots, loss, rng) for _ in range(rounds)]
 
 
-def simulate(rondo, folder, robots, loss):
-    fleet = (ROOT / "examples/koord/lineform.toml").read_text()
+def simulate(rondo, folder, robots, loss, way):
+    fleet = (ROOT / "examples/koord/lineform.toml").read_text() + f'\n[rounds]\nexchange = "{way}"\n'
     fleet = fleet.replace("count = 16", f"count = {robots}").replace("delta = 0.5", "delta = 0.1")
     (folder / "fleet.toml").write_text(fleet)
     (folder / "radio.toml").write_text(f"[network]\nloss = {loss}\n")
@@ -53,18 +53,18 @@ def simulate(rondo, folder, robots, loss):
 
 def main():
     rondo = sys.argv[1]
-    print("robots  loss   median     p99      max   barrier p99   ratio   bytes/robot/round   bytes/robot/s   x real time")
+    print("robots  loss         way   median     p99      max   barrier p99   ratio   bytes/robot/round   bytes/robot/s   x real time")
     with tempfile.TemporaryDirectory() as name:
-        for robots in (4, 7, 12):
-            for loss in (0.0, 0.2):
-                report = simulate(rondo, pathlib.Path(name), robots, loss)
+        for robots in (4, 12, 32):
+            for loss, way in [(loss, way) for loss in (0.0, 0.2) for way in ("all-to-all", "sequencer", "central")]:
+                report = simulate(rondo, pathlib.Path(name), robots, loss, way)
                 network, wait = report["network"], report["network"]["wait"]
                 usual = quantile(barrier(robots, loss), 0.99)
                 each = network["bytes"] / robots
-                print(f"{robots:6}  {loss:4.1f} {1e3 * wait['median']:6.1f} ms {1e3 * wait['p99']:5.1f} ms {1e3 * wait['max']:5.1f} ms"
+                print(f"{robots:6}  {loss:4.1f}  {way:>10} {1e3 * wait['median']:6.1f} ms {1e3 * wait['p99']:5.1f} ms {1e3 * wait['max']:5.1f} ms"
                       f" {1e3 * usual:10.0f} ms {usual / wait['p99']:7.1f} {each / report['rounds']:19.0f} {each / report['time']:15.0f}"
                       f" {report['time'] / report['seconds']:13.0f}")
-                if robots == 12 and loss == 0:
+                if robots == 12 and loss == 0 and way == "all-to-all":
                     rate = each / report["time"]
     print(f"the original middleware, 12 robots: {ORIGINAL} bytes/robot/s, {ORIGINAL / rate:.0f} times as many")
 

@@ -21,7 +21,8 @@ class Check {
       : team_(team), record_(record), stop_(stop), explainer_(team) {}
 
   std::vector<Finding> Run() {
-    for (size_t i = 0; i < record_.entries.size() && !stop_.StopRequested(); ++i) {
+    for (size_t i = 0; i < record_.entries.size(); ++i) {
+      if (i % kLook == 0 && stop_.StopRequested()) break;
       const Entry& e = record_.entries[i];
       at_ = i;
       if (e.robot >= record_.robots) {
@@ -130,8 +131,11 @@ class Check {
   bool Same(size_t a, size_t b) const { return a == b || record_.images[a] == record_.images[b]; }
 
   void Explain(const Entry& e, size_t before) {
-    const std::vector<Word> from = StateOf(team_, record_.images[before]);
-    const std::vector<Word> to = StateOf(team_, record_.images[e.what]);
+    if (before != last_image_) last_state_ = StateOf(team_, record_.images[before]);
+    const std::vector<Word> from = std::move(last_state_);
+    last_image_ = e.what;  // most likely the one before the next round
+    last_state_ = StateOf(team_, record_.images[e.what]);
+    const std::vector<Word>& to = last_state_;
     if (from.empty() || to.empty()) return Say(Wrong::kUnreadable, "an image is none of this program's");
     std::vector<bool> may_skip(record_.robots, true);
     if (const auto it = members_.find(e.epoch); it != members_.end()) {
@@ -161,7 +165,9 @@ class Check {
         Say(Wrong::kStarved, fmt::format("robot {} wanted to act in {} rounds up to round {}, and never did",
                                          r, waits, e.round - 1));
     }
-    if (team_.heap().words_in_use() > kMostWords) team_.Collect({});
+    if (team_.heap().words_in_use() <= kMostWords) return;
+    const std::span<const Word> states[] = {last_state_};
+    team_.Collect(states);
   }
 
   void Committed(const Entry& e) {
@@ -221,12 +227,15 @@ class Check {
   }
 
   static constexpr size_t kMostWords = 1'000'000;
+  static constexpr size_t kLook = 256;  // entries between two looks for a stop
 
   koord::semantics::Team& team_;
   const Record& record_;
   const base::StopToken& stop_;
   Explainer explainer_;
   size_t at_ = 0;
+  size_t last_image_ = kNothing;   // of the state that was explained last
+  std::vector<Word> last_state_;
   size_t rounds_ = 0;
   std::vector<Finding> found_;
   std::map<uint64_t, std::vector<Life>> members_;                  // by epoch

@@ -73,6 +73,53 @@ with tempfile.TemporaryDirectory() as folder:
     done = campaign("p.koord", cwd=folder)
     check(done.returncode == 1 and "limit" in done.stderr, done.stdout + done.stderr)
 
+# Patience beyond the lease keeps a fleet from going on in time: a failing run, small, that is kept and made again.
+PATIENT = """[[scenario]]
+seed = 2303
+robots = 2
+rounds = 8
+on_loss = "wait"
+exchange = "sequencer"
+disks = true
+delta = 0.05
+stop_time = 0.001
+patience = 3
+"""
+for kind, at, length, robot in (("alone", 0.11, 0.131, 1), ("alone", 0.025, 0.04, 1), ("slow", 0.055, 0.065, 1), ("crash", 0.024, 0.008, 0)):
+    PATIENT += f'[[scenario.fault]]\nkind = "{kind}"\nat = {at}\nlength = {length}\nrobot = {robot}\namount = {0.05 if kind == "slow" else 0}\n'
+
+
+def replay(path):
+    return subprocess.run([RONDO, "replay", str(path)], cwd=ROOT, capture_output=True, text=True, timeout=600)
+
+
+with tempfile.TemporaryDirectory() as name:
+    folder = pathlib.Path(name)
+    (folder / "patient.toml").write_text(PATIENT)
+    done = campaign("examples/koord/mutex", "--scenarios", folder / "patient.toml", "--save", folder / "found.toml", "--json")
+    out = json.loads(done.stdout)
+    check(done.returncode == 1 and "is not reached" in out["failure"]["what"], done.stdout)
+    check(out["saved"] == str(folder / "found.toml") and out["trace"] == str(folder / "found.mcap"), done.stdout)
+    done = campaign("examples/koord/mutex", "--scenarios", folder / "found.toml", "--save", folder / "again.toml")
+    check(done.returncode == 1 and "rondo replay" in done.stdout and "exchange = " in done.stdout, done.stdout)
+    check((folder / "again.mcap").read_bytes() == (folder / "found.mcap").read_bytes(), "the same trace")
+    done = replay(folder / "found.mcap")
+    check(done.returncode == 0 and "bit for bit" in done.stdout and "is not reached" in done.stdout, done.stdout + done.stderr)
+    other = (folder / "found.mcap").read_bytes()
+    (folder / "other.mcap").write_bytes(other.replace(b"contributed", b"contributee", 1))
+    done = replay(folder / "other.mcap")
+    check(done.returncode == 1 and "differs: /rondo/log at t = " in done.stdout, done.stdout + done.stderr)
+    (folder / "other.mcap").write_bytes(other.replace(b"robots = 2", b"robots = 0", 1))
+    done = replay(folder / "other.mcap")
+    check(done.returncode == 1 and "scenario" in done.stdout + done.stderr, done.stdout + done.stderr)
+    # Good runs are kept where people ask for it.
+    done = campaign("examples/koord/delivery", "--runs", 3, "--seed", 5, "--rounds", 6, "--logs", folder / "logs")
+    logs = sorted((folder / "logs").glob("*.mcap"))
+    check(done.returncode == 0 and [log.stem for log in logs] == ["5", "6", "7"], done.stdout + done.stderr)
+    for log in logs:
+        done = replay(log)
+        check(done.returncode == 0 and "bit for bit" in done.stdout, done.stdout + done.stderr)
+
 process = subprocess.Popen([RONDO, "campaign", "examples/koord/mutex", "--runs", "1000000"], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 time.sleep(2)
 process.send_signal(signal.SIGINT)

@@ -63,15 +63,22 @@ def operations_of(lines):
 
 
 def planted(operations):
-    """Somebody reads what was there before; nothing if no variable ever changes."""
-    reads = [o for o in operations if not o["write"]]
-    for late in reversed(reads):
-        for early in reads:
-            if early["key"] == late["key"] and early["value"] != late["value"] and early["return"] < late["call"] and not any(
-                    o["write"] and o["key"] == late["key"] and o["value"] == early["value"] and o["return"] > early["return"] for o in operations):
-                wrong = copy.deepcopy(operations)
-                wrong[operations.index(late)]["value"] = early["value"]
-                return wrong
+    """Somebody reads what was overwritten before it began; nothing if no variable ever changes."""
+    by_key = {}
+    for o in operations:
+        by_key.setdefault(o["key"], []).append(o)
+    for key, all_of_key in by_key.items():
+        writes = [o for o in all_of_key if o["write"]]
+        for old in writes:
+            gone = max(w["return"] for w in writes if w["value"] == old["value"])
+            for w in writes:
+                if w["call"] <= gone:
+                    continue
+                for i, read in enumerate(operations):
+                    if read["key"] == key and not read["write"] and read["call"] > w["return"]:
+                        wrong = copy.deepcopy(operations)
+                        wrong[i]["value"] = old["value"]
+                        return wrong
     return None
 
 

@@ -50,7 +50,8 @@ struct Memory : Disk {
   std::optional<Bytes> record;
 };
 
-// The store of one robot in one of the worlds; all worlds share the node that computes for it.
+// The store of one robot in one of the worlds; all worlds share the node that computes for it, and its heap: nothing in the
+// program lives there.
 class Store : public Program {
  public:
   explicit Store(koord::node::Node& node) : node_(&node), state_(node.state()) {}
@@ -159,10 +160,13 @@ class Exploration {
     for (uint32_t r = 0; r < kRobots; ++r) world_ = Begin(world_, r);
   }
 
-  // Lets everything come in order until all robots are in a round.
+  // Lets everything come in order until all robots have acted on the beginning of a round.
   void Settle(uint64_t round) {
     if (round == 0) return;
-    for (size_t next = 0; !AllIn(round);) {
+    size_t next = 0;
+    // Over one robot, some are always ahead: rounds follow each other without a pause here.
+    const Phase other = limits_.exchange == Exchange::kAllToAll ? Phase::kCommitted : Phase::kCollecting;
+    while (!AllIn(round, other)) {
       if (next < world_.flying.size()) {
         const uint32_t datagram = world_.flying[next++];
         if (auto after = Step(world_, datagrams_[datagram].first, datagram)) world_ = std::move(*after);
@@ -174,7 +178,9 @@ class Exploration {
       }
       world_ = *Step(world_, first, kTick);
     }
-    world_.flying.clear();
+    // What came cannot matter any more; where all wait for the end of the round, neither can what did not.
+    const size_t over = AllIn(round, Phase::kCommitted) ? world_.flying.size() : next;
+    world_.flying.erase(world_.flying.begin(), world_.flying.begin() + static_cast<ptrdiff_t>(over));
   }
 
   void Run() {
@@ -192,9 +198,10 @@ class Exploration {
   bool complete() const { return complete_; }
 
  private:
-  bool AllIn(uint64_t round) const {
+  bool AllIn(uint64_t round, Phase other) const {
     return std::ranges::all_of(world_.robots, [&](const auto& robot) {
-      return robot->core->place().round >= round && robot->core->phase() == Phase::kCommitted;
+      const Phase phase = robot->core->phase();
+      return robot->core->place().round >= round && (phase == Phase::kCommitted || phase == other);
     });
   }
 
@@ -447,6 +454,28 @@ TEST(Exhaustive, TwoRounds) {
   Limits limits;
   limits.ticks = 1;
   Explore(limits, 1, "two rounds, a timer");
+}
+
+TEST(Exhaustive, TwoRoundsOverASequencer) {
+  Limits limits;
+  limits.ticks = 1;
+  limits.exchange = Exchange::kSequencer;
+  Explore(limits, 1, "two rounds over a sequencer, a timer");
+}
+
+TEST(Exhaustive, ACrashWithASequencer) {
+  Limits limits;
+  limits.ticks = 1;
+  limits.crashes = 1;
+  limits.exchange = Exchange::kSequencer;
+  Explore(limits, 1, "a crash with a sequencer, without disks");
+}
+
+TEST(Exhaustive, TwoRoundsOverAServer) {
+  Limits limits;
+  limits.ticks = 2;
+  limits.exchange = Exchange::kCentral;
+  Explore(limits, 1, "two rounds over a server, two timers");
 }
 
 TEST(Exhaustive, TwoRoundsWithMoreTimers) {

@@ -135,6 +135,8 @@ void Core::On(Member from, const codec::Part& part) {
     if (part.at > peer.at) peer = {peer.incarnation, true, now_, part.at, false, false, false};
     if (part.at == peer.at) peer.holds = peer.final = true;
     TryCommit();
+    // Who waits for the end of the round before begins with the first who does, so that nobody waits for anybody.
+    if (phase_ == Phase::kCommitted) round_start_ = std::min(round_start_, now_ - settings_.delta);
   }
   Assembly& frame = frames_[static_cast<size_t>(rank)];
   // Nobody knows better what its frame is.

@@ -102,12 +102,13 @@ uint64_t Datagrams(uint32_t robots, Exchange exchange) {
   return (fleet.sent - before) / 10;
 }
 
-// Frames and news of all to all, against: frames to one, all of them to all, news to one, one word to all.
+// Frames and news of all to all, against: one frame to all, all others to one, all of them to all, news to one, one word
+// to all.
 TEST(Parts, OneRobotInTheMiddleSavesDatagrams) {
   for (const uint32_t n : {3U, 8U}) {
     EXPECT_EQ(Datagrams(n, Exchange::kAllToAll), 2 * n * (n - 1));
-    EXPECT_EQ(Datagrams(n, Exchange::kSequencer), 4 * (n - 1));
-    EXPECT_EQ(Datagrams(n, Exchange::kCentral), 4 * (n - 1));
+    EXPECT_EQ(Datagrams(n, Exchange::kSequencer), 5 * (n - 1));
+    EXPECT_EQ(Datagrams(n, Exchange::kCentral), 5 * (n - 1));
   }
 }
 

@@ -21,10 +21,10 @@ void Core::Begin() {
   outputs_->Add(std::move(said));
   Progress();
   const Member self{settings_.self, settings_.incarnation};
-  const uint32_t to = collector_.value_or(kAll);
-  if (to != settings_.self)
-    ForParts(codec::What::kFrame, place_, self, frame, 0, UINT64_MAX,
-             [&](const codec::Part& part) { Post(to, part); });
+  // Whoever collects the frames says to all that the round has begun.
+  const uint32_t to = collector_ == settings_.self ? kAll : collector_.value_or(kAll);
+  ForParts(codec::What::kFrame, place_, self, frame, 0, UINT64_MAX,
+           [&](const codec::Part& part) { Post(to, part); });
   TryMerge();
 }
 
