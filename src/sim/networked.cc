@@ -50,6 +50,8 @@ Networked::Networked(const koord::Model& model, const Fleet& fleet, const Simula
     m.node->SetChoose([this](uint64_t round, size_t robot, std::span<const Effect> effects) {
       return Choose(round, robot, effects);
     });
+    m.calls = std::make_unique<koord::node::SlowCalls>(*m.functions, *m.team, *m.node, cores_.now());
+    m.team->machine().SetHost(m.calls.get());
     m.monitor = std::make_unique<Monitor>(*m.team, diagnostics, [](const Violation&, bool) {});
   }
 }
@@ -105,6 +107,7 @@ rounds::Program& Networked::Begin(uint32_t r) {
   Machine& m = machines_[r];
   m.node->Reset(m.team->blank(), options_.seed);
   m.node->Load(store_);
+  m.calls->Reset();
   m.contributed = {};
   m.acted = 0;
   if (cores_.incarnation(r) > 1) {
@@ -113,6 +116,8 @@ rounds::Program& Networked::Begin(uint32_t r) {
   }
   return *m.node;
 }
+
+void Networked::Slows(uint32_t r, cores::Time delay) { machines_[r].calls->SetDelay(delay); }
 
 void Networked::Crashed(uint32_t r) { Happens(static_cast<int>(r), "crashes"); }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "koord/node/node.h"
+#include "koord/node/slow_calls.h"
 #include "sim/cores/cores.h"
 #include "sim/functions/functions.h"
 #include "sim/monitor.h"
@@ -81,6 +81,7 @@ class Networked : cores::Robots {
     std::unique_ptr<koord::semantics::Team> team;
     std::unique_ptr<Senses> senses;
     std::unique_ptr<koord::node::Node> node;
+    std::unique_ptr<koord::node::SlowCalls> calls;
     std::unique_ptr<Monitor> monitor;  // of summaries
     runtime::rounds::Place contributed;
     cores::Time contributed_at = 0;
@@ -91,6 +92,7 @@ class Networked : cores::Robots {
   size_t Choose(uint64_t round, size_t robot, std::span<const koord::semantics::Effect> effects) const;
   runtime::rounds::Program& Begin(uint32_t robot) override;
   void Crashed(uint32_t robot) override;
+  void Slows(uint32_t robot, cores::Time delay) override;
   void FallBack(uint32_t robot);
   void Happens(int robot, const std::string& what);
   void On(uint32_t robot, const runtime::rounds::Output& output) override;

@@ -16,24 +16,8 @@ constexpr size_t kMostItems = 3;
 
 }  // namespace
 
-uint64_t AnyFunctions::Number(size_t f, size_t robot, std::span<const Word> arguments) const {
-  const koord::Function& function = team_.model().functions[f];
-  runtime::codec::Bytes bytes;
-  runtime::codec::Writer writer(bytes);
-  writer.Number(f);
-  writer.Number(function.port < 0 ? 0 : robot);
-  size_t at = 0;
-  for (const lang::TypeId parameter : function.parameters) {
-    const uint32_t width = Layout::Width(team_.model().types, parameter);
-    koord::node::EncodeValue(team_.model().types, team_.heap(), parameter, arguments.subspan(at, width),
-                             writer);
-    at += width;
-  }
-  return runtime::codec::Sum(bytes);
-}
-
 Answer AnyFunctions::Call(size_t f, size_t robot, std::span<const Word> arguments, std::span<Word> result) {
-  uint64_t random = Number(f, robot, arguments);
+  uint64_t random = koord::node::QuestionOf(team_, f, robot, arguments);
   std::vector<Word> words;
   Make(team_.model().functions[f].result, random, words, 0);
   if (words.size() != result.size()) return Answer::kNone;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "koord/node/values.h"
+#include "koord/node/slow_calls.h"
 #include "koord/semantics/team.h"
 
 /// Computes external functions where no world is simulated.
@@ -14,8 +14,6 @@ class AnyFunctions final : public koord::semantics::Host {
 
   koord::semantics::Answer Call(size_t f, size_t robot, std::span<const koord::semantics::Word> arguments,
                                 std::span<koord::semantics::Word> result) override;
-  /// Returns a number for a call: the same for the same function, robot and values, whatever the heap.
-  uint64_t Number(size_t f, size_t robot, std::span<const koord::semantics::Word> arguments) const;
   void Log(size_t, size_t, std::span<const koord::semantics::Word>) override {}
 
  private:

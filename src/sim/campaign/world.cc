@@ -7,8 +7,9 @@
 #include <utility>
 
 #include "base/mixed.h"
+#include "koord/node/slow_calls.h"
+#include "sim/campaign/any_functions.h"
 #include "sim/campaign/noise.h"
-#include "sim/campaign/slow_functions.h"
 #include "sim/cores/cores.h"
 
 namespace rondo::sim::campaign {
@@ -36,8 +37,10 @@ class World : cores::Robots {
     out_.record.stop_time = s_.stop_time;
     for (size_t r = 0; r < s_.robots; ++r) {
       noises_.push_back(std::make_unique<Noise>(*teams_[r], s_.seed, cores_.now()));
-      functions_.push_back(std::make_unique<SlowFunctions>(*teams_[r], *nodes_[r], cores_.now()));
-      teams_[r]->machine().SetHost(functions_.back().get());
+      any_.push_back(std::make_unique<AnyFunctions>(*teams_[r]));
+      functions_.push_back(
+          std::make_unique<koord::node::SlowCalls>(*any_[r], *teams_[r], *nodes_[r], cores_.now()));
+      teams_[r]->machine().SetHost(functions_[r].get());
     }
   }
 
@@ -188,7 +191,8 @@ class World : cores::Robots {
   std::vector<std::unique_ptr<koord::node::Node>>& nodes_;
   const history::Image& start_;  // before `init`
   std::vector<std::unique_ptr<Noise>> noises_;
-  std::vector<std::unique_ptr<SlowFunctions>> functions_;
+  std::vector<std::unique_ptr<AnyFunctions>> any_;
+  std::vector<std::unique_ptr<koord::node::SlowCalls>> functions_;
   cores::Cores cores_;
   std::vector<uint64_t> committed_;  // by robot
   uint64_t base_ = 0;

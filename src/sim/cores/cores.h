@@ -36,7 +36,7 @@ class Robots {
   /// Says that a robot is gone, with everything that it had in mind.
   virtual void Crashed(uint32_t robot) = 0;
   /// Says how long an external function of a robot takes from now on.
-  virtual void Slows(uint32_t, Time) {}
+  virtual void Slows(uint32_t robot, Time delay) = 0;
   /// Receives everything but `Send`, in order.
   virtual void On(uint32_t robot, const runtime::rounds::Output& output) = 0;
 };

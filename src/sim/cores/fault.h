@@ -30,7 +30,7 @@ enum class FaultKind : uint8_t {
   kPause,      ///< a robot stands still, and goes on as if nothing had been
   kDiskFull,   ///< the disk of a robot takes nothing
   kSlow,       ///< a robot needs so long for each step, in seconds
-  kPlanner,    ///< what a robot asks an external function for the first time takes so long, in seconds
+  kPlanner,    ///< what a robot asks a function of a port for the first time takes so long, in seconds
   kClock,      ///< the clock on the wall of a robot is so far ahead, in seconds
 };
 constexpr size_t kFaultKinds = 14;
