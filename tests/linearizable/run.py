@@ -91,6 +91,7 @@ def main():
     rondo = str(pathlib.Path(sys.argv[1]).resolve())
     runs = int(sys.argv[sys.argv.index("--runs") + 1]) if "--runs" in sys.argv else 200
     build = ROOT / "build" / "linearizable"
+    build.mkdir(parents=True, exist_ok=True)
     subprocess.run(["/usr/bin/go", "build", "-o", build / "judge", "."], cwd=HERE, check=True)
     failed = 0
     for program in PROGRAMS:
