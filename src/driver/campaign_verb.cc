@@ -231,7 +231,8 @@ void AddCampaignVerb(CLI::App& app, ExitStatus& status) {
       .Between(uint64_t{1}, uint64_t{1'000'000'000});
   verb.Option("--rounds", options->rounds, "how long each is; default: 30")
       .Between(uint64_t{1}, uint64_t{1'000'000});
-  verb.Option("--seed", options->seed, "of the first run; the others count up; default: 1");
+  verb.Option("--seed", options->seed, "of the first run; the others count up; default: 1")
+      .Between(uint64_t{0}, uint64_t{9'000'000'000'000'000});
   verb.Option("--robots", options->robots, "team sizes, from the least to the greatest; default: 2 to 7")
       .Between(size_t{1}, size_t{64});
   verb.Option("--scenarios", options->scenarios, "run these scenarios (TOML) instead of random ones");

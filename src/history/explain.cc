@@ -25,7 +25,8 @@ Explainer::Explainer(koord::semantics::Team& team) : team_(team), transition_(te
 
 std::optional<Explanation> Explainer::Explain(std::span<const Word> before, std::span<const Word> after,
                                               bool init, const std::vector<bool>& may_skip,
-                                              const std::vector<std::vector<Word>>& fallen) {
+                                              const std::vector<std::vector<Word>>& fallen,
+                                              const std::vector<std::vector<uint32_t>>& waits) {
   start_.assign(before.begin(), before.end());
   for (const size_t v : sensors_) {
     for (size_t r = 0; r < team_.robots(); ++r) {
@@ -37,6 +38,7 @@ std::optional<Explanation> Explainer::Explain(std::span<const Word> before, std:
   init_ = init;
   may_skip_ = &may_skip;
   fallen_ = &fallen;
+  waits_ = &waits;
   if (init)
     transition_.PrepareInit(start_);
   else
@@ -49,7 +51,7 @@ std::optional<Explanation> Explainer::Explain(std::span<const Word> before, std:
     const auto effects = transition_.Of(r);
     for (size_t e = 0; e < effects.size(); ++e) {
       if (effects[e].fault != Fault::kNone) continue;
-      found_.could_act[r] = true;
+      found_.could_act[r] = found_.could_act[r] || !Waits(r, effects[e].event);
       if (Fits(r, &effects[e])) options_[r].push_back(static_cast<int>(e));
     }
     found_.idle[r] = options_[r].empty();
@@ -100,6 +102,10 @@ bool Explainer::Try(size_t robot) {
   return false;
 }
 
+bool Explainer::Waits(size_t robot, uint32_t event) const {
+  return robot < waits_->size() && std::ranges::find((*waits_)[robot], event) != (*waits_)[robot].end();
+}
+
 // One holder for each lock; and who leaves an urgent event undone cannot have it, or takes no part.
 bool Explainer::Locks() {
   std::vector<uint32_t> held;
@@ -113,7 +119,7 @@ bool Explainer::Locks() {
   for (size_t r = 0; r < team_.robots(); ++r) {
     if (found_.choice[r] >= 0 || (*may_skip_)[r]) continue;
     for (const Effect& effect : transition_.Of(r)) {
-      if (effect.fault != Fault::kNone || !effect.urgent) continue;
+      if (effect.fault != Fault::kNone || !effect.urgent || Waits(r, effect.event)) continue;
       if (!effect.locks || std::ranges::find(held, effect.event) == held.end()) return false;
     }
   }

@@ -14,7 +14,7 @@ using koord::semantics::Word;
 struct Explanation {
   static constexpr int kSkipped = -1;
   std::vector<int> choice;      ///< by robot: which of its effects, or `kSkipped`
-  std::vector<bool> could_act;  ///< by robot: it had an event that can be completed
+  std::vector<bool> could_act;  ///< by robot: it had an event that can be completed and waits for nothing
   std::vector<bool> idle;       ///< by robot: what it alone writes shows that it ran none
 };
 
@@ -30,14 +30,17 @@ class Explainer {
   /// @param may_skip  by robot: it takes no part, so that it skips whatever is urgent.
   /// @param fallen  by robot: the state in which it fell back last, or nothing. What fallbacks set may have become part
   /// of the state at any moment since.
+  /// @param waits  by robot: events that it says it leaves out, because functions that they ask are not finished.
   std::optional<Explanation> Explain(std::span<const Word> before, std::span<const Word> after, bool init,
                                      const std::vector<bool>& may_skip,
-                                     const std::vector<std::vector<Word>>& fallen = {});
+                                     const std::vector<std::vector<Word>>& fallen = {},
+                                     const std::vector<std::vector<uint32_t>>& waits = {});
 
  private:
   static bool Writes(const koord::semantics::Effect* effect, uint32_t at);
   bool Fits(size_t robot, const koord::semantics::Effect* effect);
   bool Try(size_t robot);
+  bool Waits(size_t robot, uint32_t event) const;
   bool Locks();
   bool LastWriters();
 
@@ -52,6 +55,7 @@ class Explainer {
   bool init_ = false;
   const std::vector<bool>* may_skip_ = nullptr;
   const std::vector<std::vector<Word>>* fallen_ = nullptr;
+  const std::vector<std::vector<uint32_t>>* waits_ = nullptr;
   size_t tried_ = 0;
 };
 

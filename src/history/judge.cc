@@ -93,7 +93,7 @@ class Check {
     const auto [it, fresh] = said_.emplace(std::tuple(LifeOf(e), e.epoch, e.round), e.what);
     if (!fresh && record_.texts[it->second] != record_.texts[e.what])
       Say(Wrong::kTwice, fmt::format("{} says two different things in round {}", Of(e), e.round));
-    if (fresh && e.waits) waiting_.insert({e.robot, e.epoch, e.round});
+    if (fresh && !e.waits.empty()) waiting_[{e.robot, e.epoch, e.round}] = e.waits;
     if (fresh) spoke_[{LifeOf(e), e.epoch, e.round}] = e.time;
     // What it set before it speaks can be part of what it says.
     if (const auto fell = fallen_.find(e.robot); fresh && fell != fallen_.end())
@@ -141,16 +141,16 @@ class Check {
     if (const auto it = members_.find(e.epoch); it != members_.end()) {
       for (const Life& life : it->second) may_skip[life.robot] = false;
     }
-    // Who waits for a function skips, even what is urgent.
-    for (uint32_t r = 0; r < record_.robots; ++r)
-      may_skip[r] = may_skip[r] || waiting_.contains({r, e.epoch, e.round - 1});
     ++rounds_;
     std::vector<std::vector<Word>> fallen(record_.robots);
+    std::vector<std::vector<uint32_t>> waits(record_.robots);
     for (uint32_t r = 0; r < record_.robots; ++r) {
+      const auto waiting = waiting_.find({r, e.epoch, e.round - 1});
+      if (waiting != waiting_.end()) waits[r] = waiting->second;
       const auto it = fell_before_.find({r, e.epoch, e.round - 1});
       if (it != fell_before_.end()) fallen[r] = StateOf(team_, record_.images[it->second]);
     }
-    const auto how = explainer_.Explain(from, to, e.round == 1, may_skip, fallen);
+    const auto how = explainer_.Explain(from, to, e.round == 1, may_skip, fallen, waits);
     if (!how)
       return Say(
           Wrong::kNoRound,
@@ -158,12 +158,12 @@ class Check {
                       e.round, Of(e)));
     // Who could act and did not was refused a lock.
     for (uint32_t r = 0; r < record_.robots; ++r) {
-      size_t& waits = waits_[{e.epoch, r}];
-      waits = how->idle[r] && how->could_act[r] && !may_skip[r] ? waits + 1 : 0;
+      size_t& in_vain = in_vain_[{e.epoch, r}];
+      in_vain = how->idle[r] && how->could_act[r] && !may_skip[r] ? in_vain + 1 : 0;
       const size_t members = members_.contains(e.epoch) ? members_[e.epoch].size() : record_.robots;
-      if (waits == members)
+      if (in_vain == members)
         Say(Wrong::kStarved, fmt::format("robot {} wanted to act in {} rounds up to round {}, and never did",
-                                         r, waits, e.round - 1));
+                                         r, in_vain, e.round - 1));
     }
     if (team_.heap().words_in_use() <= kMostWords) return;
     const std::span<const Word> states[] = {last_state_};
@@ -247,9 +247,10 @@ class Check {
   std::map<uint32_t, size_t> fallen_;                              // by robot: images
   std::map<std::tuple<uint32_t, uint64_t, uint64_t>, size_t>
       fell_before_;                                        // a robot spoke in a round: images
-  std::set<std::tuple<uint32_t, uint64_t, uint64_t>> waiting_;  // robot, epoch, round
+  std::map<std::tuple<uint32_t, uint64_t, uint64_t>, std::vector<uint32_t>>
+      waiting_;  // robot, epoch, round: events
   std::map<uint32_t, uint64_t> last_acted_;                // by robot: rounds
-  std::map<std::pair<uint64_t, uint32_t>, size_t> waits_;  // by epoch and robot: rounds in a row
+  std::map<std::pair<uint64_t, uint32_t>, size_t> in_vain_;  // by epoch and robot: rounds in a row
   std::vector<size_t> acts_;                               // entries
 };
 

@@ -49,7 +49,7 @@ struct Entry {
   /// in the program: `kNothing`.
   size_t what = 0;
   int64_t stamp = 0;   ///< what the clock on the robot's wall said, which may step; for people, not for the judge
-  bool waits = false;  ///< kContributed: it leaves an event out because a function is not finished
+  std::vector<uint32_t> waits;  ///< kContributed: events that it leaves out because a function is not finished
 };
 
 /// Names one life of a robot.

@@ -42,7 +42,7 @@ json LineOf(const history::Record& record, const Entry& e, koord::semantics::Tea
       break;
     case Kind::kContributed:
       line["frame"] = Hex(record.texts[e.what]);
-      if (e.waits) line["waits"] = true;
+      for (const uint32_t event : e.waits) line["waits"].push_back(team.events()[event].def->name);
       break;
     case Kind::kActed:
       line["until"] = static_cast<double>(e.until) * 1e-9;

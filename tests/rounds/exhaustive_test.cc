@@ -138,6 +138,7 @@ struct Limits {
   Exchange exchange = Exchange::kAllToAll;
   uint64_t rounds = 2;
   size_t states = 0;  // 0: all
+  Time delta = 0;     // rounds follow each other, so that no timer is needed where nothing is lost
 };
 
 class Exploration {
@@ -212,7 +213,7 @@ class Exploration {
     settings.incarnation = life;
     settings.on_loss = limits_.on_loss;
     settings.parts = PartsOf(limits_.exchange);
-    settings.delta = 0;  // rounds follow each other, so that no timer is needed where nothing is lost
+    settings.delta = limits_.delta;
     settings.resend = 100;
     settings.lease = settings.patience = 200;
     settings.stop_time = 0;
@@ -476,6 +477,14 @@ TEST(Exhaustive, TwoRoundsOverAServer) {
   limits.ticks = 2;
   limits.exchange = Exchange::kCentral;
   Explore(limits, 1, "two rounds over a server, two timers");
+}
+
+// Who waits for the end of a round begins with the first who does.
+TEST(Exhaustive, TwoRoundsWithAPauseBetweenThem) {
+  Limits limits;
+  limits.ticks = 3;
+  limits.delta = 50;
+  Explore(limits, 1, "two rounds with a pause, three timers");
 }
 
 TEST(Exhaustive, TwoRoundsWithMoreTimers) {

@@ -53,7 +53,7 @@ const std::vector<Cell>& Node::FallBack(uint64_t round) {
 }
 
 // Whole cells; of one that is written in parts, all words.
-void Node::EncodeEffect(const Effect& effect, std::span<const Word> store, Bytes& out) {
+void Node::EncodeEffect(const Effect& effect, Bytes& out) {
   touched_.clear();
   std::vector<Word>& after = seen_;
   const auto write = [&](uint32_t at, Word value) {
@@ -70,7 +70,7 @@ void Node::EncodeEffect(const Effect& effect, std::span<const Word> store, Bytes
   writer.Number(touched_.size());
   for (const Cell cell : touched_) {
     const uint32_t at = cells_.Address(cell, robot_), width = cells_.Width(cell);
-    cells_.Encode(cell, robot_, store, std::span(after).subspan(at, width), writer);
+    cells_.Encode(cell, robot_, state_, std::span(after).subspan(at, width), writer);
     std::copy_n(before_.begin() + at, width, after.begin() + at);
   }
 }
@@ -82,13 +82,14 @@ size_t Node::First(uint64_t round, std::span<const Effect> effects) const {
 }
 
 // What the robot sees of the world now goes into `seen_`; the store gets it with the frame.
-void Node::See(uint64_t round, std::span<const Word> store, Bytes& inputs) {
-  seen_.assign(store.begin(), store.end());
-  Writer writer(inputs);
-  const std::vector<Cell>& apart = commands_.Tell(store);
+void Node::See(uint64_t round) {
+  seen_ = state_;
+  inputs_.clear();
+  Writer writer(inputs_);
+  const std::vector<Cell>& apart = commands_.Tell(state_);
   writer.Number(cells_.sensors().size() + apart.size());
   const auto tell = [&](Cell cell, std::span<const Word> words) {
-    cells_.Encode(cell, robot_, store, words, writer);
+    cells_.Encode(cell, robot_, state_, words, writer);
   };
   for (const Cell cell : cells_.sensors()) {
     const std::span<Word> words(seen_.data() + cells_.Address(cell, robot_), cells_.Width(cell));
@@ -102,12 +103,12 @@ void Node::See(uint64_t round, std::span<const Word> store, Bytes& inputs) {
   }
 }
 
-void Node::Offer(const Effect& effect, std::span<const Word> store) {
+void Node::Offer(const Effect& effect) {
   if (offers_ == offered_.size()) offered_.emplace_back();
   Offered& offered = offered_[offers_++];
   offered.event = effect.event;
   offered.effect.clear();
-  EncodeEffect(effect, store, offered.effect);
+  EncodeEffect(effect, offered.effect);
   offered.said.clear();
   for (const semantics::Said& said : effect.said)
     offered.said.push_back(team_.ShowLogged(said.type, said.value));
@@ -115,8 +116,7 @@ void Node::Offer(const Effect& effect, std::span<const Word> store) {
 
 void Node::Contribute(uint64_t round, Bytes& out) {
   round_ = round;
-  inputs_.clear();
-  See(round, state_, inputs_);
+  See(round);
   if (round == 0)
     transition_.PrepareInit(seen_);
   else
@@ -126,9 +126,13 @@ void Node::Contribute(uint64_t round, Bytes& out) {
   offers_ = 0;
   failed_.reset();
   const size_t first = First(round, effects);
-  waits_ = std::ranges::any_of(effects, [](const Effect& e) { return e.fault == semantics::Fault::kNotYet; });
-  if (first < effects.size() && effects[first].fault != semantics::Fault::kNone &&
-      effects[first].fault != semantics::Fault::kNotYet)
+  // What `init` asks for has to be there.
+  const auto late = [&](const Effect& e) { return e.fault == semantics::Fault::kNotYet && round > 0; };
+  waits_.clear();
+  for (const Effect& effect : effects) {
+    if (late(effect)) waits_.push_back(effect.event);
+  }
+  if (first < effects.size() && effects[first].fault != semantics::Fault::kNone && !late(effects[first]))
     failed_ = {round == 0 ? kInit : effects[first].event, effects[first].fault, effects[first].fault_span};
   const size_t count =
       first < effects.size() ? std::min(effects.size(), runtime::rounds::kMostAlternatives) : 0;
@@ -136,7 +140,7 @@ void Node::Contribute(uint64_t round, Bytes& out) {
   for (size_t i = 0; i < count; ++i) {
     const Effect& effect = effects[(first + i) % effects.size()];
     if (effect.fault != semantics::Fault::kNone) continue;
-    Offer(effect, state_);
+    Offer(effect);
     contribution_.alternatives.push_back({effect.event, effect.locks, {}});
     if (!effect.locks) break;  // nothing can take it away
   }
@@ -166,7 +170,7 @@ bool Node::Reads(View bytes, uint32_t robot, bool inputs, std::span<const Word> 
 bool Node::Accepts(uint32_t robot, View inputs, std::span<const Alternative> alternatives) const {
   if (!Reads(inputs, robot, true, state_, nullptr)) return false;
   return std::ranges::all_of(alternatives, [&](const Alternative& a) {
-    return a.event <= team_.events().size() && Reads(a.effect, robot, false, state_, nullptr);
+    return a.event < team_.events().size() && Reads(a.effect, robot, false, state_, nullptr);
   });
 }
 

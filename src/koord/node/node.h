@@ -82,17 +82,17 @@ class Node : public runtime::rounds::Program {
   const Applied& applied() const { return applied_; }
   /// Returns why the event that the robot would have liked best in this round is left out; nothing if it is not.
   const std::optional<Failure>& failed() const { return failed_; }
-  /// Reports whether, in this round, an event is left out because a function is not finished.
-  bool waits() const { return waits_; }
+  /// Returns the events that are left out in this round because a function is not finished.
+  const std::vector<uint32_t>& waits() const { return waits_; }
   /// Returns the round of which the robot says, or said last, what it does.
   uint64_t round() const { return round_; }
   const Cells& cells() const { return cells_; }
 
  private:
   size_t First(uint64_t round, std::span<const semantics::Effect> effects) const;
-  void See(uint64_t round, std::span<const Word> store, runtime::codec::Bytes& inputs);
-  void Offer(const semantics::Effect& effect, std::span<const Word> store);
-  void EncodeEffect(const semantics::Effect& effect, std::span<const Word> store, runtime::codec::Bytes& out);
+  void See(uint64_t round);
+  void Offer(const semantics::Effect& effect);
+  void EncodeEffect(const semantics::Effect& effect, runtime::codec::Bytes& out);
   bool Reads(runtime::codec::View bytes, uint32_t robot, bool inputs, std::span<const Word> before,
              std::vector<Word>* state, std::vector<Cell>* cells = nullptr) const;
   void Collect();
@@ -114,7 +114,7 @@ class Node : public runtime::rounds::Program {
   size_t offers_ = 0;
   Applied applied_;
   std::optional<Failure> failed_;
-  bool waits_ = false;
+  std::vector<uint32_t> waits_;
   uint64_t round_ = 0;
   Commands commands_;
   size_t collect_at_ = 0;  // words of the heap

@@ -8,7 +8,7 @@
 namespace rondo::koord::node {
 
 /// Gives what another host gives, but for functions of ports after a while: planners compute while rounds go on. What is
-/// asked again with the same arguments is the same question, and its answer is kept. During `init` answers come at once:
+/// asked again with the same arguments is the same question, and once there is an answer there is one at once. During `init` answers come at once:
 /// nothing goes on without them.
 class SlowCalls final : public semantics::Host {
  public:

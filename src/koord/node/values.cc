@@ -184,7 +184,6 @@ void DecodeChange(const lang::TypeTable& types, Heap& heap, TypeId id, std::span
   if (kept.front + kept.back > length || kept.front + kept.back + fresh > kMostItems) r.Fail();
   if (!r.ok()) return;
   const size_t start = words.size();
-  // Entries of the heap move when there are new ones.
   const auto keep = [&](size_t from, size_t count) {
     const auto old = heap[before[0]].subspan(from * width, count * width);
     words.insert(words.end(), old.begin(), old.end());

@@ -171,7 +171,8 @@ void Core::Unpack(const codec::Part& part) {
 void Core::Timers() {
   if (phase_ == Phase::kHalted) return;
   TryCommit();
-  // Not in the step in which it acts: the program's store has to be that one until the step is over.
+  // Not in the step in which it acts or falls back: what surrounds it does that when the step is over, with the store and
+  // the actuators that there are then.
   if (phase_ == Phase::kCommitted && !acted_ && now_ >= round_start_ + settings_.delta) Begin();
   Repeat();
   TryHalt();

@@ -171,7 +171,7 @@ class Core {
 
   // Acting.
   bool active_ = false;
-  bool acted_ = false;  // in this step
+  bool acted_ = false;  // or fell back, in this step
   Time lease_end_ = 0;
   Time not_before_ = 0;  // in this epoch nobody acts earlier
 
@@ -180,6 +180,7 @@ class Core {
   Time resend_at_ = 0, interval_ = 0;
   uint32_t attempt_ = 0;  // repetitions since the last progress
   Time progress_at_ = 0;
+  std::optional<Time> merged_at_;  // the last round of this epoch
 
   // Epochs.
   Voter voter_;

@@ -41,7 +41,9 @@ std::vector<Member> Core::Candidates() const {
     // hear us.
     const bool said = collecting && frames_[static_cast<size_t>(rank)].complete();
     const bool slow = collecting && !said && Silence() >= 2 * settings_.patience;
-    if (said || (Recent(r) && !slow)) all.push_back(member);
+    // Over one robot nobody else is heard, but the round that is over had the frames of all.
+    const bool took_part = merged_at_ && now_ - *merged_at_ <= settings_.patience;
+    if (said || ((Recent(r) || took_part) && !slow)) all.push_back(member);
   }
   return all;
 }
@@ -219,6 +221,7 @@ void Core::Adopt(const Decision& decision) {
   before_.clear();
   bundle_.Clear();
   base_.Clear();
+  merged_at_.reset();
   collector_.reset();
   counter_.reset();
   if (rank_ >= 0) {

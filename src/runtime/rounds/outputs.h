@@ -58,15 +58,22 @@ class Outputs {
   void Clear() {
     for (Output& output : list_) {
       if (auto* send = std::get_if<Send>(&output)) spare_.push_back(std::move(send->bytes));
-      if (auto* said = std::get_if<Contributed>(&output)) spare_.push_back(std::move(said->payload));
+      if (auto* said = std::get_if<Contributed>(&output)) payload_ = std::move(said->payload);
     }
     list_.clear();
   }
-  /// Returns empty bytes, for an output.
+  /// Returns empty bytes, for a datagram.
   Bytes Empty() {
     if (spare_.empty()) return {};
     Bytes bytes = std::move(spare_.back());
     spare_.pop_back();
+    bytes.clear();
+    return bytes;
+  }
+
+  /// Returns empty bytes, for what a robot contributes: once in a step, and as large as frames get.
+  Bytes EmptyPayload() {
+    Bytes bytes = std::move(payload_);
     bytes.clear();
     return bytes;
   }
@@ -80,6 +87,7 @@ class Outputs {
  private:
   std::vector<Output> list_;
   std::vector<Bytes> spare_;
+  Bytes payload_;
 };
 
 }  // namespace rondo::runtime::rounds

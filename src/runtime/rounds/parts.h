@@ -8,9 +8,9 @@
 #include "runtime/codec/messages.h"
 
 /// The parts of a round that can be replaced: distributed shared memory, locks and the barrier between rounds
-/// (Koord, section 8.2). Whatever they say, a round is the same function of the same frames, and is final only when a
-/// strict majority of the fleet has its end (docs/adr/0022): they decide who sends what to whom, and in which order robots
-/// take their turns.
+/// (Koord, section 8.2). A round is the same function of the same frames, and is final only when a strict majority of the
+/// fleet has its end (docs/adr/0022): shared memory and the barrier decide who sends what to whom, and what they say costs time
+/// at most; locks decide in which order robots take their turns, and have to say the same on every robot.
 namespace rondo::runtime::rounds {
 
 /// Brings what each robot does in a round to all.
@@ -40,6 +40,8 @@ class Barrier {
   /// Returns the member that counts who has it, and tells all; nothing: each robot counts for itself. The same on every
   /// robot.
   virtual std::optional<uint32_t> Counter(uint64_t epoch, std::span<const codec::Member> members) const = 0;
+  /// Reports whether a robot that waits for its word in vain asks others.
+  virtual bool AsksOthers() const = 0;
 };
 
 /// Names the ways that come with this library.

@@ -40,22 +40,24 @@ codec::Status Core::MyStatus(bool asks, bool forwards) const {
 
 void Core::SendStatus() {
   // What goes over one robot goes over it at first. Who hears nothing of it for long asks the others.
-  const auto& hub = phase_ == Phase::kCollecting ? collector_ : counter_;
+  const bool collecting = phase_ == Phase::kCollecting;
+  const auto& hub = collecting ? collector_ : counter_;
   if (hub && attempt_ == 0) {
     if (hub != settings_.self) Post(*hub, MyStatus(false, false));
     return;
   }
-  const bool patient = !settings_.parts.memory->AsksOthers() && Silence() < settings_.patience / 2;
+  const bool others = collecting ? settings_.parts.memory->AsksOthers() : settings_.parts.barrier->AsksOthers();
+  const bool patient = !others && Silence() < settings_.patience / 2;
   // One that began another life is in the middle of nothing.
   const bool there = hub && hub != settings_.self && RankOf({*hub, peers_[*hub].incarnation}) >= 0;
   if (there && phase_ != Phase::kFetching && (attempt_ < 2 || patient))
-    return Post(*hub, MyStatus(true, phase_ == Phase::kCollecting));
+    return Post(*hub, MyStatus(true, collecting));
   Post(kAll, MyStatus(attempt_ > 0, false));
   // Whose sender is silent may be with somebody else; one is asked after the other.
   if (attempt_ == 0 || settings_.robots == 1 || rank_ < 0) return;
   if (phase_ != Phase::kFetching && attempt_ < 2) return;
-  const uint32_t others = settings_.robots - 1;
-  Post((settings_.self + 1 + attempt_ % others) % settings_.robots, MyStatus(false, true));
+  const uint32_t rest = settings_.robots - 1;
+  Post((settings_.self + 1 + attempt_ % rest) % settings_.robots, MyStatus(false, true));
 }
 
 void Core::Repeat() {

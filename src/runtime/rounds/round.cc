@@ -16,7 +16,7 @@ void Core::Begin() {
     frame.clear();
     Encode(Contribution(), frame);
   }
-  Contributed said{place_, outputs_->Empty()};
+  Contributed said{place_, outputs_->EmptyPayload()};
   said.payload.assign(frame.begin(), frame.end());
   outputs_->Add(std::move(said));
   Progress();
@@ -42,18 +42,24 @@ void Core::TryMerge() {
   frames_.resize(members_.size());
   for (Assembly& frame : frames_) frame.Clear();
   bundle_.Clear();
+  merged_at_ = now_;
   ++place_.round;
   StoreNow();
 }
 
-// Sends the frames of all to all.
+// Sends the frames of all to all: as one whole, unless it has parts that nobody could ask for.
 void Core::PassOn() {
   if (settings_.robots == 1) return;
   codec::Bytes& all = bundle_.Make();
   codec::Writer writer(all);
   for (const Assembly& frame : frames_) writer.Block(frame.whole());
-  ForParts(codec::What::kFrames, place_, std::nullopt, all, 0, UINT64_MAX,
-           [&](const codec::Part& part) { Post(kAll, part); });
+  const auto send = [&](const codec::Part& part) { Post(kAll, part); };
+  if (all.size() <= 64 * codec::kPart)
+    return ForParts(codec::What::kFrames, place_, std::nullopt, all, 0, UINT64_MAX, send);
+  for (size_t k = 0; k < frames_.size(); ++k) {
+    if (static_cast<int>(k) == rank_) continue;
+    ForParts(codec::What::kFrame, place_, decision_->members[k], frames_[k].whole(), 0, UINT64_MAX, send);
+  }
 }
 
 // Is this what a member can say? Counts it if it is not.
@@ -101,6 +107,7 @@ void Core::TryCommit() {
 void Core::EndLease() {
   if (!active_ || now_ < lease_end_) return;
   active_ = false;
+  acted_ = true;
   outputs_->Add(FallBack{});
   if (settings_.on_loss == OnLoss::kHalt) phase_ = Phase::kHalted;
 }

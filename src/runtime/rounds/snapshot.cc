@@ -77,6 +77,7 @@ void Core::Describe(Bytes& out) const {
   w.Number(attempt_);
   behind(std::max(progress_at_, not_before_), long_ago);
   behind(progress_at_, long_ago);
+  Maybe(w, merged_at_, [&](Time at) { behind(at, settings_.patience + 1); });
   Maybe(w, voter_.promised, [&](const Ballot& b) { codec::Write(w, b); });
   Maybe(w, voter_.accepted, [&](const Ballot& b) { codec::Write(w, b); });
   Maybe(w, voter_.value, [&](const Decision& d) { codec::Write(w, d); });

@@ -58,6 +58,8 @@ void AnyFunctions::Make(lang::TypeId id, uint64_t& random, std::vector<Word>& wo
       return;
     }
     case TypeKind::kString:
+      words.push_back(team_.heap().InternText(std::string(random % 5, 'a')));
+      return;
     case TypeKind::kOpaque:
       words.push_back(team_.heap().Intern(std::vector<Word>{random % 5}));
       return;

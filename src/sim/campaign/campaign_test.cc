@@ -114,11 +114,11 @@ TEST_F(CampaignTest, ASlowPlannerIsASkip) {
   EXPECT_EQ(slow.stuck, "");
   EXPECT_LT(slow.time, 3'400'000'000);
   size_t waits = 0;
-  for (const history::Entry& e : slow.record.entries) waits += e.waits ? 1 : 0;
+  for (const history::Entry& e : slow.record.entries) waits += e.waits.empty() ? 0 : 1;
   EXPECT_GT(waits, 3U);
   // Without that word, the judge asks why it did nothing.
   history::Record silent = slow.record;
-  for (history::Entry& e : silent.entries) e.waits = false;
+  for (history::Entry& e : silent.entries) e.waits.clear();
   EXPECT_GT(Judged(silent).size(), 0U);
 }
 
@@ -157,6 +157,21 @@ TEST_F(CampaignTest, AFullDiskKeepsNobodyFromGoingOnWhenItIsMended) {
   const Outcome outcome = fleet_.Run(scenario);
   EXPECT_EQ(outcome.stuck, "");
   EXPECT_EQ(Judged(outcome.record).size(), 0U);
+}
+
+// What it says in a round tells how its actuators are since.
+TEST_F(CampaignTest, WhoFallsBackSaysWhatItDoesAfterThat) {
+  Scenario scenario;
+  scenario.seed = 1706;
+  scenario.robots = 5;
+  scenario.rounds = 20;
+  scenario.on_loss = OnLoss::kEvict;
+  scenario.disks = true;
+  scenario.faults = {{FaultKind::kCut, 176'610'285, 133'061'478, 1, 0, 0},
+                     {FaultKind::kCorrupt, 678'126'963, 1'885'853'500, 0, 0, 0.49},
+                     {FaultKind::kSlow, 1'537'554'343, 762'331'143, 2, 0, 0.0076},
+                     {FaultKind::kDuplicate, 465'489'448, 56'603'575, 0, 0, 0.44}};
+  EXPECT_EQ(Judged(fleet_.Run(scenario).record).size(), 0U);
 }
 
 // The judge knows nothing of the protocol; it sees what is planted into a good record.

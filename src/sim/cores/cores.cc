@@ -38,9 +38,10 @@ Cores::Cores(const Setup& setup, Robots& robots)
 void Cores::Start() {
   for (uint32_t r = 0; r < robots(); ++r) Begin(r);
   for (size_t i = 0; i < faults_.size(); ++i) {
-    const Time end = faults_[i].at + faults_[i].length;
+    Time end = faults_[i].at + faults_[i].length;
     Push(faults_[i].at, What::kFaultBegins, static_cast<uint32_t>(i));
     Push(end, What::kFaultEnds, static_cast<uint32_t>(i));
+    if (faults_[i].kind == FaultKind::kSlow) end += Nanoseconds(faults_[i].amount);  // its last step
     quiet_ = std::max(quiet_, end);
   }
 }

@@ -11,7 +11,7 @@ namespace rondo::koord::semantics {
 enum class Answer : uint8_t {
   kValue,
   kNone,   ///< the function has no value there: `Fault::kExternal`
-  kLater,  ///< it is not finished: `Fault::kNotYet`
+  kLater,  ///< it is not finished: `Fault::kNotYet`; not for `init`, which nothing goes on without
 };
 
 /// Provides what a program cannot compute by itself: external functions, and a place for what it writes to
