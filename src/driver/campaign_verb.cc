@@ -145,11 +145,10 @@ Saved Save(const campaign::Trial& failure, const Options& options, const runs::C
 std::function<void(const campaign::Trial&, koord::semantics::Team&)> LogsTo(
     const Options& options, const runs::CampaignTexts& texts) {
   return [&options, &texts, done = uint64_t{0}, failed = false](const campaign::Trial& trial,
-                                                               koord::semantics::Team& team) mutable {
+                                                                koord::semantics::Team& team) mutable {
     ++done;
     const uint64_t number = options.scenarios.empty() ? trial.scenario.seed : done;
-    const std::string path =
-        (std::filesystem::path(options.logs) / fmt::format("{}.mcap", number)).string();
+    const std::string path = (std::filesystem::path(options.logs) / fmt::format("{}.mcap", number)).string();
     const auto written = runs::WriteCampaignTrace(path, texts, trial, team);
     if (!written.ok() && !std::exchange(failed, true))
       PrintFailure(fmt::format("cannot write `{}`: {}", path, written.error().message));
@@ -236,7 +235,9 @@ void AddCampaignVerb(CLI::App& app, ExitStatus& status) {
   verb.Option("--robots", options->robots, "team sizes, from the least to the greatest; default: 2 to 7")
       .Between(size_t{1}, size_t{64});
   verb.Option("--scenarios", options->scenarios, "run these scenarios (TOML) instead of random ones");
-  verb.Option("--save", options->save, "where to write the scenario that fails, and, with `.mcap`, what its robots logged; default: NAME.scenario.toml");
+  verb.Option(
+      "--save", options->save,
+      "where to write the scenario that fails, and, with `.mcap`, what its robots logged; default: NAME.scenario.toml");
   verb.Option("--logs", options->logs, "a folder for what the robots log in each run (MCAP), good or not");
   verb.Flag("--json", options->json, "the result as JSON on standard output");
   verb.Footer(

@@ -234,7 +234,7 @@ class Check {
   const base::StopToken& stop_;
   Explainer explainer_;
   size_t at_ = 0;
-  size_t last_image_ = kNothing;   // of the state that was explained last
+  size_t last_image_ = kNothing;  // of the state that was explained last
   std::vector<Word> last_state_;
   size_t rounds_ = 0;
   std::vector<Finding> found_;
@@ -246,12 +246,12 @@ class Check {
   std::map<std::tuple<Life, uint64_t, uint64_t>, int64_t> spoke_;  // times
   std::map<uint32_t, size_t> fallen_;                              // by robot: images
   std::map<std::tuple<uint32_t, uint64_t, uint64_t>, size_t>
-      fell_before_;                                        // a robot spoke in a round: images
+      fell_before_;  // a robot spoke in a round: images
   std::map<std::tuple<uint32_t, uint64_t, uint64_t>, std::vector<uint32_t>>
-      waiting_;  // robot, epoch, round: events
-  std::map<uint32_t, uint64_t> last_acted_;                // by robot: rounds
+      waiting_;                                              // robot, epoch, round: events
+  std::map<uint32_t, uint64_t> last_acted_;                  // by robot: rounds
   std::map<std::pair<uint64_t, uint32_t>, size_t> in_vain_;  // by epoch and robot: rounds in a row
-  std::vector<size_t> acts_;                               // entries
+  std::vector<size_t> acts_;                                 // entries
 };
 
 }  // namespace

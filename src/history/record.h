@@ -48,8 +48,10 @@ struct Entry {
   /// kStored, kFellBack: which image; kContributed: which text; kAdopted: which list of members. kFellBack without fallbacks
   /// in the program: `kNothing`.
   size_t what = 0;
-  int64_t stamp = 0;   ///< what the clock on the robot's wall said, which may step; for people, not for the judge
-  std::vector<uint32_t> waits;  ///< kContributed: events that it leaves out because a function is not finished
+  int64_t stamp =
+      0;  ///< what the clock on the robot's wall said, which may step; for people, not for the judge
+  std::vector<uint32_t>
+      waits;  ///< kContributed: events that it leaves out because a function is not finished
 };
 
 /// Names one life of a robot.

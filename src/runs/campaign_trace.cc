@@ -30,8 +30,8 @@ std::string Hex(const std::vector<uint8_t>& bytes) {
 }
 
 json LineOf(const history::Record& record, const Entry& e, koord::semantics::Team& team) {
-  json line{{"robot", e.robot}, {"life", e.incarnation},  {"did", history::Name(e.kind)},
-            {"epoch", e.epoch}, {"round", e.round},       {"stamp", static_cast<double>(e.stamp) * 1e-9}};
+  json line{{"robot", e.robot}, {"life", e.incarnation}, {"did", history::Name(e.kind)},
+            {"epoch", e.epoch}, {"round", e.round},      {"stamp", static_cast<double>(e.stamp) * 1e-9}};
   const auto state = [&] { return StateToJson(team, history::StateOf(team, record.images[e.what])); };
   switch (e.kind) {
     case Kind::kStored:
@@ -112,7 +112,8 @@ Replayed ReplayCampaign(const std::string& bytes, const json& record, workspace:
   if (again.value() != bytes) return {false, "differs: " + FirstDifference(bytes, again.value())};
   return {true, fmt::format("the same run, bit for bit: {} of {}; {}",
                             base::Counted(trial.outcome.record.entries.size(), "line"),
-                            base::Counted(scenarios[0].robots, "robot"), trial.failed() ? trial.What() : "nothing is wrong")};
+                            base::Counted(scenarios[0].robots, "robot"),
+                            trial.failed() ? trial.What() : "nothing is wrong")};
 }
 
 }  // namespace rondo::runs

@@ -86,7 +86,8 @@ Far:
 class Steps : public koord::node::Sensors {
  public:
   explicit Steps(koord::semantics::Team& team) : team_(team) {}
-  void Read(size_t robot, uint64_t round, koord::node::Cell, std::span<koord::semantics::Word> words) override {
+  void Read(size_t robot, uint64_t round, koord::node::Cell,
+            std::span<koord::semantics::Word> words) override {
     const auto value = [&](uint64_t i) {
       return koord::semantics::FromFloat(static_cast<double>((round + robot + i) % 10));
     };

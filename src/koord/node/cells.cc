@@ -68,7 +68,8 @@ void Cells::Encode(Cell cell, size_t robot, std::span<const Word> state, std::sp
                state.subspan(Address(cell, robot), Width(cell)), words, writer);
 }
 
-Cell Cells::Decode(size_t robot, std::span<const Word> state, Reader& reader, std::vector<Word>& words) const {
+Cell Cells::Decode(size_t robot, std::span<const Word> state, Reader& reader,
+                   std::vector<Word>& words) const {
   Cell cell;
   cell.variable = static_cast<uint32_t>(reader.Number(stopped()));
   cell.item = static_cast<uint32_t>(reader.Number(UINT32_MAX));

@@ -367,7 +367,8 @@ TEST_F(FallbackTest, FramesMayTellOfNoOtherActuator) {
     Writer writer(cells);
     writer.Number(1);
     const Word zero = 0;
-    node_.cells().Encode({static_cast<uint32_t>(Variable(name)), 0}, 0, node_.state(), std::span(&zero, 1), writer);
+    node_.cells().Encode({static_cast<uint32_t>(Variable(name)), 0}, 0, node_.state(), std::span(&zero, 1),
+                         writer);
     return node_.Accepts(0, cells, {});
   };
   EXPECT_TRUE(accepts("Motion.v"));

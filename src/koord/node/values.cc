@@ -173,8 +173,8 @@ void EncodeChange(const lang::TypeTable& types, const Heap& heap, TypeId id, std
     EncodeValue(types, heap, *item, list.subspan(at, width), w);
 }
 
-void DecodeChange(const lang::TypeTable& types, Heap& heap, TypeId id, std::span<const Word> before, Reader& r,
-                  std::vector<Word>& words) {
+void DecodeChange(const lang::TypeTable& types, Heap& heap, TypeId id, std::span<const Word> before,
+                  Reader& r, std::vector<Word>& words) {
   const std::optional<TypeId> item = ItemOfList(types, id);
   if (!item) return DecodeValue(types, heap, id, r, words);
   const uint32_t width = Layout::Width(types, *item);

@@ -21,7 +21,8 @@ Bytes Whole(size_t size) {
 std::vector<Part> PartsOf(const Bytes& whole) {
   std::vector<Part> parts;
   for (uint32_t from = 0; size_t{from} * kPart <= whole.size(); from += 64)
-    ForParts(codec::What::kStore, {1, 2}, std::nullopt, whole, from, UINT64_MAX, [&](const Part& p) { parts.push_back(p); });
+    ForParts(codec::What::kStore, {1, 2}, std::nullopt, whole, from, UINT64_MAX,
+             [&](const Part& p) { parts.push_back(p); });
   return parts;
 }
 
@@ -56,7 +57,8 @@ TEST(Assembly, SaysWhatIsMissing) {
   EXPECT_EQ(from, 2U);
   EXPECT_EQ(window, UINT64_MAX & ~uint64_t{2});
   std::vector<uint32_t> sent;
-  ForParts(codec::What::kStore, {1, 2}, std::nullopt, whole, from, window, [&](const Part& p) { sent.push_back(p.index); });
+  ForParts(codec::What::kStore, {1, 2}, std::nullopt, whole, from, window,
+           [&](const Part& p) { sent.push_back(p.index); });
   EXPECT_EQ(sent.front(), 2U);
   EXPECT_EQ(sent[1], 4U);
 }

@@ -155,9 +155,9 @@ class Core {
   bool started_ = false;
 
   // The epoch and the round.
-  std::optional<Decision> decision_;       // of the present epoch
-  std::vector<uint32_t> members_;          // robots, in order
-  int rank_ = -1;                          // among the members
+  std::optional<Decision> decision_;  // of the present epoch
+  std::vector<uint32_t> members_;     // robots, in order
+  int rank_ = -1;                     // among the members
   std::optional<uint32_t> collector_, counter_;
   Place place_;                            // where the protocol is
   Place held_;                             // the store that the program has

@@ -101,7 +101,9 @@ TEST_F(OneCoreTest, WhoPromisedStoresNothingMoreOfItsEpoch) {
   EXPECT_EQ(core_.phase(), Phase::kFetching);
   // The decision sets it free.
   Hear(2, codec::Decided{{3, everybody_, {2, 3}, DigestOf(18)}});
-  EXPECT_EQ(CountStored(Hear(1, codec::Part{codec::What::kStore, {3, 3}, std::nullopt, codec::Sum(store), 0, 1, store})), 1U);
+  EXPECT_EQ(CountStored(Hear(
+                1, codec::Part{codec::What::kStore, {3, 3}, std::nullopt, codec::Sum(store), 0, 1, store})),
+            1U);
 }
 
 // A life that forgot the ballots of the one before makes others.
@@ -140,7 +142,9 @@ TEST_F(OneCoreTest, WhoForgotVotesWhenItHasTheStore) {
   EXPECT_FALSE(Sent<codec::Promise>(Hear(2, codec::Prepare{5, {5, 2, 1}})).has_value());
   Bytes store;
   codec::Writer(store).Number(42);
-  EXPECT_EQ(CountStored(Hear(1, codec::Part{codec::What::kStore, {4, 7}, std::nullopt, codec::Sum(store), 0, 1, store})), 1U);
+  EXPECT_EQ(CountStored(Hear(
+                1, codec::Part{codec::What::kStore, {4, 7}, std::nullopt, codec::Sum(store), 0, 1, store})),
+            1U);
   EXPECT_TRUE(Sent<codec::Promise>(Hear(2, codec::Prepare{5, {5, 2, 1}})).has_value());
 }
 
@@ -161,7 +165,9 @@ TEST_F(OneCoreTest, ABaseIsWhatWasDecided) {
   Hear(1, codec::Decided{{4, everybody_, {3, 7}, DigestOf(42)}});
   Bytes store;
   codec::Writer(store).Number(41);
-  EXPECT_EQ(CountStored(Hear(1, codec::Part{codec::What::kStore, {4, 7}, std::nullopt, codec::Sum(store), 0, 1, store})), 0U);
+  EXPECT_EQ(CountStored(Hear(
+                1, codec::Part{codec::What::kStore, {4, 7}, std::nullopt, codec::Sum(store), 0, 1, store})),
+            0U);
   EXPECT_EQ(core_.phase(), Phase::kFetching);
 }
 

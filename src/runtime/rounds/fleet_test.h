@@ -67,8 +67,19 @@ class AdderFleet {
         EXPECT_EQ(codec::Sum(store), digests.at(act->at)) << act->at.round;
         ++acts;
       }
+      if (const auto* adopted = std::get_if<Adopted>(&output))
+        teams[adopted->decision.epoch] = adopted->decision.members;
       EXPECT_FALSE(std::holds_alternative<Broken>(output));
     }
+  }
+
+  /// Begins another life of a robot, which has forgotten everything.
+  void Restart(uint32_t robot, Exchange exchange) {
+    const auto robots = static_cast<uint32_t>(cores.size());
+    programs[robot] = std::make_unique<Adder>(robot);
+    cores[robot] = std::make_unique<Core>(SettingsOf(robot, robots, exchange, ++lives[robot] + 1),
+                                          *programs[robot], nullptr, std::nullopt);
+    gone.erase(robot);
   }
 
   /// Returns the round of the robot that is behind all others.
@@ -85,7 +96,9 @@ class AdderFleet {
   std::function<bool(uint32_t, uint32_t, View)> lets = [](uint32_t, uint32_t, View) { return true; };
   std::vector<std::pair<uint32_t, Bytes>> waiting;
   std::map<Place, uint64_t> digests;
-  std::set<uint32_t> gone;  ///< robots that do nothing any more
+  std::map<uint64_t, std::vector<codec::Member>> teams;  ///< by epoch
+  std::map<uint32_t, uint64_t> lives;                    ///< that are over
+  std::set<uint32_t> gone;                               ///< robots that do nothing any more
   Outputs outputs;
   Time now = 0;
   int acts = 0;

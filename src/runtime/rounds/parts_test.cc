@@ -22,7 +22,8 @@ TEST_P(PartsConformance, WhoCollectsAndCountsIsAMember) {
   for (uint32_t robots = 1; robots < 6; ++robots) {
     const std::vector<Member> members = Members(robots);
     for (uint64_t epoch = 1; epoch < 9; ++epoch) {
-      for (const auto& hub : {parts.memory->Collector(epoch, members), parts.barrier->Counter(epoch, members)})
+      for (const auto& hub :
+           {parts.memory->Collector(epoch, members), parts.barrier->Counter(epoch, members)})
         EXPECT_TRUE(!hub || (*hub % 2 == 1 && *hub < 2 * robots)) << epoch;
     }
   }
@@ -56,7 +57,9 @@ TEST_P(PartsConformance, RoundsGoOnOverARadioThatLoses) {
   for (const double loss : {0.1, 0.2, 0.4}) {
     std::mt19937 random(1);
     AdderFleet fleet(5, GetParam());
-    fleet.lets = [&](uint32_t, uint32_t, View) { return std::generate_canonical<double, 32>(random) >= loss; };
+    fleet.lets = [&](uint32_t, uint32_t, View) {
+      return std::generate_canonical<double, 32>(random) >= loss;
+    };
     fleet.Run(6000 * kMillisecond);
     EXPECT_GE(fleet.Least(), 20U) << loss;
   }
@@ -70,6 +73,27 @@ TEST_P(PartsConformance, WhoeverIsGoneTheOthersGoOn) {
     const uint64_t before = fleet.Least();
     fleet.Run(4000 * kMillisecond);
     EXPECT_GE(fleet.Least(), before + 5) << lost;
+  }
+}
+
+// Who is not heard by everybody, because all goes over one robot, is there nevertheless.
+TEST_P(PartsConformance, WhoComesBackTakesNobodysPlace) {
+  for (uint32_t seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    AdderFleet fleet(6, GetParam());
+    const double loss = 0.1 * (seed % 3);
+    fleet.lets = [&](uint32_t, uint32_t, View) {
+      return std::generate_canonical<double, 32>(random) >= loss;
+    };
+    fleet.Run(700 * kMillisecond);
+    fleet.gone.insert(4);
+    fleet.Run(3000 * kMillisecond);
+    const uint64_t without = fleet.teams.rbegin()->first;
+    fleet.Restart(4, GetParam());
+    fleet.Run(3000 * kMillisecond);
+    for (auto it = fleet.teams.upper_bound(without); it != fleet.teams.end(); ++it)
+      EXPECT_GE(it->second.size(), 6U) << "epoch " << it->first << " of seed " << seed;
+    EXPECT_EQ(fleet.teams.rbegin()->second.size(), 6U) << seed;
   }
 }
 
@@ -116,7 +140,8 @@ TEST(Parts, OneRobotInTheMiddleSavesDatagrams) {
 TEST(Parts, WithASequencerRobotsHelpEachOther) {
   AdderFleet fleet(3, Exchange::kSequencer);
   fleet.Run(350 * kMillisecond);
-  EXPECT_EQ(PartsOf(Exchange::kSequencer).memory->Collector(1, std::vector<Member>{{0, 1}, {1, 1}, {2, 1}}), 1U);
+  EXPECT_EQ(PartsOf(Exchange::kSequencer).memory->Collector(1, std::vector<Member>{{0, 1}, {1, 1}, {2, 1}}),
+            1U);
   fleet.lets = [](uint32_t from, uint32_t to, View) { return from + to != 1; };
   const uint64_t before = fleet.Least();
   fleet.Run(1000 * kMillisecond);

@@ -46,7 +46,8 @@ void Core::SendStatus() {
     if (hub != settings_.self) Post(*hub, MyStatus(false, false));
     return;
   }
-  const bool others = collecting ? settings_.parts.memory->AsksOthers() : settings_.parts.barrier->AsksOthers();
+  const bool others =
+      collecting ? settings_.parts.memory->AsksOthers() : settings_.parts.barrier->AsksOthers();
   const bool patient = !others && Silence() < settings_.patience / 2;
   // One that began another life is in the middle of nothing.
   const bool there = hub && hub != settings_.self && RankOf({*hub, peers_[*hub].incarnation}) >= 0;

@@ -64,7 +64,8 @@ void Core::PassOn() {
 
 // Is this what a member can say? Counts it if it is not.
 bool Core::Acceptable(uint32_t robot, View frame) {
-  if (Decode(frame, checked_) && program_->Accepts(robot, checked_.inputs, checked_.alternatives)) return true;
+  if (Decode(frame, checked_) && program_->Accepts(robot, checked_.inputs, checked_.alternatives))
+    return true;
   ++refused_[static_cast<size_t>(codec::Refused::kMalformed)];
   return false;
 }

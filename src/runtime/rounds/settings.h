@@ -37,7 +37,8 @@ struct Settings {
   uint32_t self = 0;
   uint32_t robots = 1;
   uint64_t incarnation = 1;  ///< greater than in any life before
-  uint64_t agreement = 0;    ///< sum of program, parameters, fleet, parts and version: what all must have in common
+  uint64_t agreement =
+      0;  ///< sum of program, parameters, fleet, parts and version: what all must have in common
   uint64_t session = 0;
   OnLoss on_loss = OnLoss::kHalt;
   Parts parts = PartsOf(Exchange::kAllToAll);

@@ -101,8 +101,9 @@ CampaignReport Search(Fleet& fleet, const Fleet::MakeTeam& make, const CampaignO
 
 std::string Story(const Trial& failure) {
   const Scenario& s = failure.scenario;
-  std::string text = fmt::format("{} robots, on_loss = \"{}\", exchange = \"{}\", {} disks, seed {}\n", s.robots,
-                                 Name(s.on_loss), Name(s.exchange), s.disks ? "with" : "without", s.seed);
+  std::string text =
+      fmt::format("{} robots, on_loss = \"{}\", exchange = \"{}\", {} disks, seed {}\n", s.robots,
+                  Name(s.on_loss), Name(s.exchange), s.disks ? "with" : "without", s.seed);
   for (const Fault& fault : s.faults) text += "  " + Tell(fault) + "\n";
   if (!failure.other.empty()) text += failure.other + "\n";
   constexpr size_t kMost = 5, kAround = 12;

@@ -45,10 +45,10 @@ struct Trial {
 /// Says what a campaign saw.
 struct CampaignReport {
   uint64_t runs = 0, rounds = 0, datagrams = 0;
-  double seconds = 0;              ///< virtual
-  double judging = 0;              ///< seconds that the judge took for all of them
-  Time recovery = 0;               ///< the longest of all runs, as in `Outcome`
-  std::set<uint64_t> visited;      ///< as in `Outcome`
+  double seconds = 0;            ///< virtual
+  double judging = 0;            ///< seconds that the judge took for all of them
+  Time recovery = 0;             ///< the longest of all runs, as in `Outcome`
+  std::set<uint64_t> visited;    ///< as in `Outcome`
   std::optional<Trial> failure;  ///< the first, as short as it could be made
   bool stopped = false;
 };

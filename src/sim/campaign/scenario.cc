@@ -84,8 +84,7 @@ Scenario Draw(uint64_t seed, size_t least, size_t most) {
     Fault f;
     constexpr FaultKind kLives[] = {FaultKind::kCrash, FaultKind::kForget, FaultKind::kPause,
                                     FaultKind::kDiskFull};
-    f.kind = storm ? kLives[below(std::size(kLives))]
-                   : static_cast<FaultKind>(below(cores::kFaultKinds));
+    f.kind = storm ? kLives[below(std::size(kLives))] : static_cast<FaultKind>(below(cores::kFaultKinds));
     f.at = storm ? from + static_cast<Time>(below(700'000'000))
                  : static_cast<Time>(below(static_cast<uint64_t>(time)));
     const uint64_t longest = storm ? 60'000'000 : below(2) == 0 ? 200'000'000 : 2'000'000'000;

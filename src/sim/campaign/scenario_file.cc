@@ -31,10 +31,10 @@ class Reader : Tables {
 
  private:
   Scenario Read(const toml::table& t) {
-    Known(
-        t,
-        {"seed", "robots", "rounds", "on_loss", "exchange", "disks", "delta", "lease", "stop_time", "patience", "fault"},
-        "a scenario");
+    Known(t,
+          {"seed", "robots", "rounds", "on_loss", "exchange", "disks", "delta", "lease", "stop_time",
+           "patience", "fault"},
+          "a scenario");
     Scenario s;
     s.seed = Whole(t, "seed", 1, 0, 9e15);
     s.robots = Whole(t, "robots", 3, 1, static_cast<double>(kMostRobots));
@@ -78,8 +78,8 @@ std::string WriteScenario(const Scenario& s, const std::string& comment) {
   text += fmt::format(
       "[[scenario]]\nseed = {}\nrobots = {}\nrounds = {}\non_loss = \"{}\"\nexchange = \"{}\"\ndisks = {}\ndelta = {:.9f}\nlease = {:.9f}\n"
       "stop_time = {:.9f}\npatience = {:.9f}\n",
-      s.seed, s.robots, s.rounds, Name(s.on_loss), Name(s.exchange), s.disks, cores::Seconds(s.delta), cores::Seconds(s.lease),
-      cores::Seconds(s.stop_time), cores::Seconds(s.patience));
+      s.seed, s.robots, s.rounds, Name(s.on_loss), Name(s.exchange), s.disks, cores::Seconds(s.delta),
+      cores::Seconds(s.lease), cores::Seconds(s.stop_time), cores::Seconds(s.patience));
   for (const Fault& f : s.faults) text += "\n[[scenario.fault]]\n" + cores::WriteFault(f);
   return text;
 }

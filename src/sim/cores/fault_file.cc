@@ -9,8 +9,7 @@ namespace {
 
 std::vector<std::string> Kinds() {
   std::vector<std::string> names;
-  for (size_t k = 0; k < kFaultKinds; ++k)
-    names.emplace_back(Name(static_cast<FaultKind>(k)));
+  for (size_t k = 0; k < kFaultKinds; ++k) names.emplace_back(Name(static_cast<FaultKind>(k)));
   return names;
 }
 

@@ -64,7 +64,7 @@ class Heap {
 
   std::vector<Entry> entries_;
   std::array<std::vector<uint32_t>, 33> free_;  // by the width of their capacity
-  std::vector<uint32_t> table_;  // open addressing: number of the entry + 1, or 0
+  std::vector<uint32_t> table_;                 // open addressing: number of the entry + 1, or 0
   size_t pinned_ = 0;
   size_t live_ = 0;
   size_t words_ = 0;
