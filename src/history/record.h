@@ -50,8 +50,8 @@ struct Entry {
   size_t what = 0;
   int64_t stamp =
       0;  ///< what the clock on the robot's wall said, which may step; for people, not for the judge
-  std::vector<uint32_t>
-      waits;  ///< kContributed: events that it leaves out because a function is not finished
+  /// kContributed: events that it leaves out because a function is not finished.
+  std::vector<uint32_t> waits = {};
 };
 
 /// Names one life of a robot.
