@@ -138,6 +138,7 @@ class Core {
   void TryEpoch();
   void Ask();
   void Choose();
+  void VoteForOwn();
   void Vote();
   void Adopt(const Decision& decision);
   void Enter();

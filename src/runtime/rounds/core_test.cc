@@ -47,6 +47,19 @@ TEST(Core, WhatNobodyAcceptsIsASkip) {
   EXPECT_GT(trio.cores[1]->refused()[static_cast<size_t>(codec::Refused::kMalformed)], 0U);
 }
 
+// Returns the first message of this kind that is sent; nothing if none is.
+template <typename Body>
+std::optional<Body> Sent(const Outputs& outputs) {
+  for (const Output& output : outputs) {
+    const auto* send = std::get_if<Send>(&output);
+    codec::Message message;
+    if (send == nullptr || codec::Decode(send->bytes, 0, 0, kRobots, message) != codec::Refused::kNothing)
+      continue;
+    if (const auto* body = std::get_if<Body>(&message.body)) return *body;
+  }
+  return std::nullopt;
+}
+
 // One core, and messages as others would send them.
 class OneCoreTest : public testing::Test {
  protected:
@@ -62,17 +75,6 @@ class OneCoreTest : public testing::Test {
     size_t count = 0;
     for (const Output& output : outputs) count += std::holds_alternative<Stored>(output) ? 1 : 0;
     return count;
-  }
-  template <typename Body>
-  static std::optional<Body> Sent(const Outputs& outputs) {
-    for (const Output& output : outputs) {
-      const auto* send = std::get_if<Send>(&output);
-      codec::Message message;
-      if (send == nullptr || codec::Decode(send->bytes, 0, 0, kRobots, message) != codec::Refused::kNothing)
-        continue;
-      if (const auto* body = std::get_if<Body>(&message.body)) return *body;
-    }
-    return std::nullopt;
   }
   static uint64_t DigestOf(uint64_t sum) {
     Bytes store;
@@ -134,6 +136,41 @@ TEST_F(OneCoreTest, AnswersToAnEarlierLifeDoNotCount) {
   hear(1, promise(2));
   hear(2, promise(2));
   EXPECT_TRUE(Sent<codec::Accept>(outputs).has_value());
+}
+
+// A disk that is full for a while costs its own vote for so long, and not for ever.
+TEST(Core, WhoseDiskIsMendedVotesForWhatItProposed) {
+  struct FullDisk : Disk {
+    bool Keep(View) override { return !full; }
+    bool full = false;
+  } disk;
+  Adder program(0);
+  Core core(SettingsOf(0), program, &disk, std::nullopt);
+  Time now = 0;
+  const auto hear = [&](uint32_t from, codec::Body body) {
+    Bytes bytes;
+    codec::Encode({0, 0, {from, 1}, std::move(body)}, bytes);
+    Outputs outputs;
+    core.Step(now += kMillisecond, bytes, outputs);
+    return outputs;
+  };
+  std::optional<codec::Prepare> prepare;
+  for (uint32_t i = 0; i < 50 && !prepare; ++i)
+    prepare = Sent<codec::Prepare>(hear(1 + i % 2, codec::Status{}));
+  ASSERT_TRUE(prepare.has_value());
+  Bytes store;
+  program.Save(store);
+  const codec::Promise promise{1, prepare->ballot, std::nullopt, std::nullopt, {0, 0}, codec::Sum(store)};
+  hear(1, promise);
+  disk.full = true;
+  EXPECT_TRUE(Sent<codec::Accept>(hear(2, promise)).has_value());
+  hear(1, codec::Accepted{1, prepare->ballot});
+  EXPECT_FALSE(Sent<codec::Decided>(hear(2, codec::Accepted{1, prepare->ballot})).has_value());
+  disk.full = false;
+  bool decided = false;
+  for (int i = 0; i < 50 && !decided; ++i)
+    decided = Sent<codec::Decided>(hear(1, codec::Status{})).has_value();
+  EXPECT_TRUE(decided);
 }
 
 // A robot that came back without its memory votes when it has the store of an epoch that admitted it.

@@ -170,7 +170,13 @@ void Core::Choose() {
   Ask();
   if (!voter_.Accept(trial_->ballot(), *trial_->value())) return;
   KeepRecord();
-  if (!disk_failed_ && trial_->Accepted(settings_.self)) Vote();
+  VoteForOwn();
+}
+
+// Its own vote counts when it is kept, which may be later than those of others.
+void Core::VoteForOwn() {
+  if (disk_failed_ || !trial_->value() || voter_.accepted != trial_->ballot()) return;
+  if (trial_->Accepted(settings_.self)) Vote();
 }
 
 void Core::On(Member from, const codec::Accept& accept) {

@@ -69,6 +69,7 @@ void Core::Repeat() {
   resend_at_ = now_ + interval_;
   if (disk_failed_) KeepRecord();
   SendStatus();
+  if (trial_) VoteForOwn();
   if (trial_) Ask();
 }
 
