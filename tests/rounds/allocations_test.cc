@@ -180,7 +180,12 @@ TEST_P(Allocations, ARoundTakesNoMemory) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rounds, Allocations,
-                         testing::Values(Exchange::kAllToAll, Exchange::kSequencer, Exchange::kCentral));
+                         testing::Values(Exchange::kAllToAll, Exchange::kSequencer, Exchange::kCentral),
+                         [](const auto& test) {
+                           std::string name(Name(test.param));
+                           std::erase(name, '-');
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace rondo::runtime::rounds
