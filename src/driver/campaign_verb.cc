@@ -109,10 +109,9 @@ campaign::CampaignReport Search(runs::CampaignTeams& teams, campaign::CampaignOp
   return report;
 }
 
-runs::CampaignTexts TextsOf(runs::SimulationFiles files, const Options& options,
-                            const workspace::Session& session) {
+// Of what was read so far.
+runs::CampaignTexts TextsOf(const runs::SimulationFiles& files, const workspace::Session& session) {
   sim::SimulationOptions texts;
-  files.network = options.scenarios;  // no specification
   runs::KeepTexts(files, session, texts);
   return {texts.program_name, texts.program, texts.spec, texts.fleet};
 }
@@ -165,11 +164,11 @@ ExitStatus Run(const Options& options) {
     if (const auto file = workspace::ReadSource(files.fleet, session))
       fleet = sim::ReadFleet(session.sources, *file, session.diagnostics);
   }
+  const runs::CampaignTexts texts = TextsOf(files, session);
   campaign::CampaignOptions search = ReadOptions(options, session);
   campaign::CampaignReport report;
   double seconds = 0;
   Saved saved;
-  const runs::CampaignTexts texts = TextsOf(files, options, session);
   ExitStatus status = ExitStatus::kRejected;
   if (loaded && !session.diagnostics.has_errors()) {
     runs::CampaignTeams teams(loaded->model, fleet);

@@ -21,8 +21,6 @@ using history::Kind;
 using nlohmann::json;
 namespace campaign = sim::campaign;
 
-const trace::Schema kRecord{"rondo.Record", "jsonschema", R"({"type":"object"})"};
-
 std::string Hex(const std::vector<uint8_t>& bytes) {
   std::string text;
   for (const uint8_t b : bytes) text += fmt::format("{:02x}", b);
@@ -81,8 +79,8 @@ base::Result<bool> WriteCampaignTrace(const std::string& path, const CampaignTex
                     {"wrong", trial.What()},
                     {"findings", findings},
                     {"robots", robots}};
-  writer.Message(writer.Channel("/rondo/run", kRecord, "json"), 0, record.dump());
-  const uint16_t log = writer.Channel("/rondo/log", kRecord, "json");
+  writer.Message(writer.Channel("/rondo/run", trace::kRecord, "json"), 0, record.dump());
+  const uint16_t log = writer.Channel("/rondo/log", trace::kRecord, "json");
   const history::Record& lines = trial.outcome.record;
   for (const Entry& e : lines.entries)
     writer.Message(log, static_cast<uint64_t>(e.time), LineOf(lines, e, team).dump());

@@ -12,8 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-const trace::Schema kRecord{"rondo.Record", "jsonschema", R"({"type":"object"})"};
-
 // The port that tells where robots are, in a state as JSON.
 const json* Positions(const json& state) {
   for (const auto& [name, values] : state.items()) {
@@ -45,8 +43,8 @@ base::Result<bool> WriteRunTrace(const std::string& path, const RunFile& run,
     const diag::FileId id(f);
     record[session.sources.path(id) == run.program ? "program" : "spec"] = session.sources.text(id);
   }
-  writer.Message(writer.Channel("/rondo/run", kRecord, "json"), 0, record.dump());
-  const uint16_t steps = writer.Channel("/rondo/step", kRecord, "json");
+  writer.Message(writer.Channel("/rondo/run", trace::kRecord, "json"), 0, record.dump());
+  const uint16_t steps = writer.Channel("/rondo/step", trace::kRecord, "json");
   std::vector<uint16_t> poses;
   for (size_t k = 0; k < run.steps.size(); ++k) {
     const uint64_t time = k * 1'000'000'000;

@@ -7,12 +7,6 @@ namespace rondo::sim {
 
 using nlohmann::json;
 
-namespace {
-
-const trace::Schema kRecord{"rondo.Record", "jsonschema", R"({"type":"object"})"};
-
-}  // namespace
-
 Recorder::Recorder(trace::Writer* writer, const Fleet& fleet) : writer_(writer), fleet_(fleet) {}
 
 uint64_t Recorder::Nanoseconds(double time) { return static_cast<uint64_t>(std::llround(time * 1e9)); }
@@ -24,15 +18,16 @@ uint16_t Recorder::Channel(const std::string& topic, const trace::Schema& schema
 }
 
 void Recorder::Run(const json& run) {
-  if (on()) writer_->Message(Channel("/rondo/run", kRecord, "json"), 0, run.dump());
+  if (on()) writer_->Message(Channel("/rondo/run", trace::kRecord, "json"), 0, run.dump());
 }
 
 void Recorder::Round(double time, const json& round) {
-  writer_->Message(Channel("/rondo/round", kRecord, "json"), Nanoseconds(time), round.dump());
+  writer_->Message(Channel("/rondo/round", trace::kRecord, "json"), Nanoseconds(time), round.dump());
 }
 
 void Recorder::Event(double time, const json& event) {
-  if (on()) writer_->Message(Channel("/rondo/event", kRecord, "json"), Nanoseconds(time), event.dump());
+  if (on())
+    writer_->Message(Channel("/rondo/event", trace::kRecord, "json"), Nanoseconds(time), event.dump());
 }
 
 void Recorder::World(const Fleet& fleet) {

@@ -19,6 +19,9 @@ struct Schema {
   std::string_view text;      ///< the definition itself
 };
 
+/// Is for what Rondo itself says of a run: any JSON object, on the topics `/rondo/...`.
+inline constexpr Schema kRecord{"rondo.Record", "jsonschema", R"({"type":"object"})"};
+
 /// Writes a record of a run as MCAP (MCAP specification, version 0): chunks without compression, an index and
 /// statistics behind them, so that the usual tools can read and seek. The same calls give the same bytes.
 ///

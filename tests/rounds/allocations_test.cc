@@ -8,6 +8,7 @@
 #include "koord/node/compiled_test.h"
 #include "koord/node/node.h"
 #include "runtime/rounds/core.h"
+#include "runtime/rounds/every_exchange_test.h"
 
 namespace {
 
@@ -179,13 +180,7 @@ TEST_P(Allocations, ARoundTakesNoMemory) {
   EXPECT_GT(fleet.acts, 500U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rounds, Allocations,
-                         testing::Values(Exchange::kAllToAll, Exchange::kSequencer, Exchange::kCentral),
-                         [](const auto& test) {
-                           std::string name(Name(test.param));
-                           std::erase(name, '-');
-                           return name;
-                         });
+RONDO_FOR_EVERY_EXCHANGE(Allocations);
 
 }  // namespace
 }  // namespace rondo::runtime::rounds

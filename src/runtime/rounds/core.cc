@@ -83,20 +83,19 @@ int Core::RankOf(Member member) const {
 }
 
 void Core::Receive(View bytes) {
-  codec::Message& message = message_;
   const codec::Refused why =
-      codec::Decode(bytes, settings_.agreement, settings_.session, settings_.robots, message);
+      codec::Decode(bytes, settings_.agreement, settings_.session, settings_.robots, message_);
   ++refused_[static_cast<size_t>(why)];
-  if (why != codec::Refused::kNothing || message.sender.robot == settings_.self) return;
-  Peer& peer = peers_[message.sender.robot];
-  if (message.sender.incarnation < peer.incarnation) return;  // from an earlier life
-  if (message.sender.incarnation > peer.incarnation) {
+  if (why != codec::Refused::kNothing || message_.sender.robot == settings_.self) return;
+  Peer& peer = peers_[message_.sender.robot];
+  if (message_.sender.incarnation < peer.incarnation) return;  // from an earlier life
+  if (message_.sender.incarnation > peer.incarnation) {
     peer = Peer();
-    peer.incarnation = message.sender.incarnation;
+    peer.incarnation = message_.sender.incarnation;
   }
   peer.heard = true;
   peer.last = now_;
-  std::visit([&](const auto& body) { On(message.sender, body); }, message.body);
+  std::visit([&](const auto& body) { On(message_.sender, body); }, message_.body);
 }
 
 void Core::On(Member from, const codec::Status& status) {

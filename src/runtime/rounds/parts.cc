@@ -13,24 +13,26 @@ class Everybody final : public SharedMemory, public Barrier {
   std::optional<uint32_t> Counter(uint64_t, Members) const override { return std::nullopt; }
 };
 
-class Sequencer final : public SharedMemory, public Barrier {
+// The same robot collects and counts.
+class OverOne : public SharedMemory, public Barrier {
+ public:
+  std::optional<uint32_t> Counter(uint64_t epoch, Members members) const final {
+    return Collector(epoch, members);
+  }
+};
+
+class Sequencer final : public OverOne {
  public:
   std::optional<uint32_t> Collector(uint64_t epoch, Members members) const override {
     return members[epoch % members.size()].robot;
   }
   bool AsksOthers() const override { return true; }
-  std::optional<uint32_t> Counter(uint64_t epoch, Members members) const override {
-    return Collector(epoch, members);
-  }
 };
 
-class Server final : public SharedMemory, public Barrier {
+class Server final : public OverOne {
  public:
   std::optional<uint32_t> Collector(uint64_t, Members members) const override { return members[0].robot; }
   bool AsksOthers() const override { return false; }
-  std::optional<uint32_t> Counter(uint64_t epoch, Members members) const override {
-    return Collector(epoch, members);
-  }
 };
 
 // Who wants a lock in every round waits for as many rounds as there are robots, at most.

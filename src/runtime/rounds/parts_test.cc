@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "runtime/rounds/every_exchange_test.h"
 #include "runtime/rounds/fleet_test.h"
 
 namespace rondo::runtime::rounds {
@@ -109,13 +110,7 @@ TEST_P(PartsConformance, AFleetThatIsCutInTwoIsOneAgain) {
   EXPECT_GE(fleet.Least(), before + 5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rounds, PartsConformance,
-                         testing::Values(Exchange::kAllToAll, Exchange::kSequencer, Exchange::kCentral),
-                         [](const auto& test) {
-                           std::string name(Name(test.param));
-                           std::erase(name, '-');
-                           return name;
-                         });
+RONDO_FOR_EVERY_EXCHANGE(PartsConformance);
 
 uint64_t Datagrams(uint32_t robots, Exchange exchange) {
   AdderFleet fleet(robots, exchange);

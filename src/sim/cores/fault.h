@@ -33,7 +33,7 @@ enum class FaultKind : uint8_t {
   kPlanner,    ///< what a robot asks a function of a port for the first time takes so long, in seconds
   kClock,      ///< the clock on the wall of a robot is so far ahead, in seconds
 };
-constexpr size_t kFaultKinds = 14;
+constexpr size_t kFaultKinds = static_cast<size_t>(FaultKind::kClock) + 1;
 std::string_view Name(FaultKind kind);
 
 /// Is one thing that goes wrong, from a moment on, for a while.
