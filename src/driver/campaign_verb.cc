@@ -110,10 +110,11 @@ campaign::CampaignReport Search(runs::CampaignTeams& teams, campaign::CampaignOp
 }
 
 // Of what was read so far.
-runs::CampaignTexts TextsOf(const runs::SimulationFiles& files, const workspace::Session& session) {
+runs::CampaignTexts TextsOf(const runs::SimulationFiles& files, const workspace::Session& session,
+                            const runs::FileContents& of_fleet) {
   sim::SimulationOptions texts;
-  runs::KeepTexts(files, session, texts);
-  return {texts.program_name, texts.program, texts.spec, texts.fleet};
+  runs::KeepTexts(files, session, of_fleet, texts);
+  return {texts.program_name, texts.program, texts.spec, texts.fleet, of_fleet};
 }
 
 // Where a failing run is kept; empty: nowhere.
@@ -159,12 +160,12 @@ ExitStatus Run(const Options& options) {
   const runs::SimulationFiles files = runs::FindSimulationFiles(options.file, options.spec, options.fleet);
   const auto loaded = workspace::LoadKoord({files.program, files.spec, true}, session);
   sim::Fleet fleet;
+  runs::FleetFiles surroundings(files.fleet, session);
   std::error_code ignored;
   if (loaded && (!options.fleet.empty() || std::filesystem::exists(files.fleet, ignored))) {
-    if (const auto file = workspace::ReadSource(files.fleet, session))
-      fleet = sim::ReadFleet(session.sources, *file, session.diagnostics);
+    if (const auto file = workspace::ReadSource(files.fleet, session)) fleet = surroundings.Read(*file);
   }
-  const runs::CampaignTexts texts = TextsOf(files, session);
+  const runs::CampaignTexts texts = TextsOf(files, session, surroundings.contents());
   campaign::CampaignOptions search = ReadOptions(options, session);
   campaign::CampaignReport report;
   double seconds = 0;

@@ -3,8 +3,8 @@
 #include "driver/command.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
+#include "runs/fleet_files.h"
 #include "sim/draw/plots.h"
-#include "sim/fleet/fleet.h"
 #include "trace/reader.h"
 
 namespace rondo::driver {
@@ -32,10 +32,11 @@ ExitStatus Run(const Options& options) {
     PrintFailure(fmt::format("`{}`: {}", options.trace, history.error().message));
     return ExitStatus::kRejected;
   }
-  diag::SourceSet sources;
-  diag::Diagnostics ignored;  // it could be read when the trace was made
-  const diag::FileId file = sources.Add("fleet", sim::TextOf(history.value().run, "fleet"));
-  const sim::World world = sim::ReadFleet(sources, file, ignored).world;
+  workspace::Session session;  // it could be read when the trace was made
+  const diag::FileId file = session.sources.Add("fleet", sim::TextOf(history.value().run, "fleet"));
+  const nlohmann::json none = nlohmann::json::object();
+  const auto kept = runs::FilesFromJson(history.value().run.value("files", none));
+  const sim::World world = runs::FleetFiles(kept.value_or(runs::FileContents{}), session).Read(file).world;
   if (options.map && history.value().map.cells.empty()) {
     PrintFailure(fmt::format("`{}` has no map", options.trace));
     return ExitStatus::kRejected;

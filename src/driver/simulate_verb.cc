@@ -156,10 +156,11 @@ ExitStatus Run(const Options& options) {
   runs::SimulationFiles files = runs::FindSimulationFiles(options.file, options.spec, options.fleet);
   const auto loaded = workspace::LoadKoord({files.program, files.spec, true}, session);
   sim::Fleet fleet;
+  runs::FleetFiles surroundings(files.fleet, session);
   if (loaded) {
     const auto file = workspace::ReadSource(files.fleet, session);
     if (!file) PrintFailure("a simulation needs a fleet: robots, models and a world; see docs/simulation.md");
-    if (file) fleet = sim::ReadFleet(session.sources, *file, session.diagnostics);
+    if (file) fleet = surroundings.Read(*file);
   }
   sim::NetworkFaults network;
   files.network = options.network;
@@ -184,7 +185,7 @@ ExitStatus Run(const Options& options) {
   simulation.duration = options.duration;
   simulation.jobs = options.jobs;
   if (!options.network.empty()) simulation.network = &network;
-  runs::KeepTexts(files, session, simulation);
+  runs::KeepTexts(files, session, surroundings.contents(), simulation);
   std::optional<trace::Writer> writer;
   if (!options.trace.empty()) {
     auto opened = trace::Writer::Open(options.trace);

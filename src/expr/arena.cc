@@ -231,6 +231,12 @@ TermId Arena::Rebuild(const Term& like, std::vector<TermId> args) {
       return Remove(args[0], args[1]);
     case Op::kListSet:
       return Set(args[0], args[1], args[2]);
+    case Op::kListInsert:
+      return Insert(args[0], args[1], args[2]);
+    case Op::kListDrop:
+      return Drop(args[0], args[1]);
+    case Op::kListSlice:
+      return Slice(args[0], args[1], args[2]);
   }
   CHECK(false);
   return {};

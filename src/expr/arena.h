@@ -137,6 +137,14 @@ class Arena {
 
   /// Returns the list with another element at the index; the same list when the index is out of range.
   TermId Set(TermId list, TermId index, TermId element);
+  /// Returns the list with the element between those before the index and those from it on; the same list if
+  /// there is no such place.
+  TermId Insert(TermId list, TermId index, TermId element);
+  /// Returns the list without the item at the index; the same list when the index is out of range.
+  TermId Drop(TermId list, TermId index);
+  /// Returns the items from one index up to, not including, another one; the same list unless 0 <= from <= to
+  /// <= length.
+  TermId Slice(TermId list, TermId from, TermId to);
 
   // -- reading
   const Term& term(TermId id) const { return terms_[id.index()]; }

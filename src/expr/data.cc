@@ -120,4 +120,20 @@ TermId Arena::Set(TermId list, TermId index, TermId element) {
   return Intern(Op::kListSet, sort_of(list), 0, std::vector{list, index, element});
 }
 
+TermId Arena::Insert(TermId list, TermId index, TermId element) {
+  const Sort& s = sort(sort_of(list));
+  CHECK(s.kind == SortKind::kList && sort_of(index) == int_ && s.parts[0] == sort_of(element));
+  return Intern(Op::kListInsert, sort_of(list), 0, std::vector{list, index, element});
+}
+
+TermId Arena::Drop(TermId list, TermId index) {
+  CHECK(sort(sort_of(list)).kind == SortKind::kList && sort_of(index) == int_);
+  return Intern(Op::kListDrop, sort_of(list), 0, std::vector{list, index});
+}
+
+TermId Arena::Slice(TermId list, TermId from, TermId to) {
+  CHECK(sort(sort_of(list)).kind == SortKind::kList && sort_of(from) == int_ && sort_of(to) == int_);
+  return Intern(Op::kListSlice, sort_of(list), 0, std::vector{list, from, to});
+}
+
 }  // namespace rondo::expr

@@ -125,6 +125,9 @@ class Evaluator {
       case Op::kListAppend:
       case Op::kListRemove:
       case Op::kListSet:
+      case Op::kListInsert:
+      case Op::kListDrop:
+      case Op::kListSlice:
         return valuation_(t);
     }
     return std::nullopt;

@@ -6,11 +6,21 @@ namespace rondo::expr {
 namespace {
 
 // at(result, k) = at(list, k + shift) for all lower <= k < upper
-TermId Copies(Arena& arena, TermId result, TermId list, TermId lower, TermId upper, int shift) {
+TermId Copies(Arena& arena, TermId result, TermId list, TermId lower, TermId upper, TermId shift) {
   const TermId k = arena.FreshBound("k", arena.Int());
   const TermId range = arena.And(arena.Le(lower, k), arena.Lt(k, upper));
-  const TermId source = arena.At(list, arena.Add(k, arena.IntNumber(shift)));
+  const TermId source = arena.At(list, arena.Add(k, shift));
   return arena.Forall({k}, arena.Implies(range, arena.Eq(arena.At(result, k), source)));
+}
+
+TermId Copies(Arena& arena, TermId result, TermId list, TermId lower, TermId upper, int shift) {
+  return Copies(arena, result, list, lower, upper, arena.IntNumber(shift));
+}
+
+// `t` is `list` changed so if it can be, else the same.
+TermId If(Arena& arena, TermId possible, TermId changed, TermId t) {
+  return arena.And(arena.Implies(possible, changed),
+                   arena.Implies(arena.Not(possible), arena.Eq(t, arena.arg(t, 0))));
 }
 
 TermId AxiomOfAppend(Arena& arena, TermId t) {
@@ -53,7 +63,45 @@ TermId AxiomOfSet(Arena& arena, TermId t) {
       arena.And({arena.Eq(arena.Length(t), length), arena.Eq(arena.At(t, index), arena.arg(t, 2)),
                  Copies(arena, t, list, zero, index, 0),
                  Copies(arena, t, list, arena.Add(index, arena.IntNumber(1)), length, 0)});
-  return arena.And(arena.Implies(inside, changed), arena.Implies(arena.Not(inside), arena.Eq(t, list)));
+  return If(arena, inside, changed, t);
+}
+
+TermId AxiomOfInsert(Arena& arena, TermId t) {
+  const TermId list = arena.arg(t, 0);
+  const TermId index = arena.arg(t, 1);
+  const TermId length = arena.Length(list);
+  const TermId zero = arena.IntNumber(0);
+  const TermId one = arena.IntNumber(1);
+  const TermId longer = arena.Add(length, one);
+  const TermId changed = arena.And(
+      {arena.Eq(arena.Length(t), longer), arena.Eq(arena.At(t, index), arena.arg(t, 2)),
+       Copies(arena, t, list, zero, index, 0), Copies(arena, t, list, arena.Add(index, one), longer, -1)});
+  return If(arena, arena.And(arena.Le(zero, index), arena.Le(index, length)), changed, t);
+}
+
+TermId AxiomOfDrop(Arena& arena, TermId t) {
+  const TermId list = arena.arg(t, 0);
+  const TermId index = arena.arg(t, 1);
+  const TermId length = arena.Length(list);
+  const TermId zero = arena.IntNumber(0);
+  const TermId shorter = arena.Sub(length, arena.IntNumber(1));
+  const TermId changed =
+      arena.And({arena.Eq(arena.Length(t), shorter), Copies(arena, t, list, zero, index, 0),
+                 Copies(arena, t, list, index, shorter, 1)});
+  return If(arena, arena.And(arena.Le(zero, index), arena.Lt(index, length)), changed, t);
+}
+
+TermId AxiomOfSlice(Arena& arena, TermId t) {
+  const TermId list = arena.arg(t, 0);
+  const TermId from = arena.arg(t, 1);
+  const TermId to = arena.arg(t, 2);
+  const TermId zero = arena.IntNumber(0);
+  const TermId length = arena.Sub(to, from);
+  const TermId changed =
+      arena.And(arena.Eq(arena.Length(t), length), Copies(arena, t, list, zero, length, from));
+  const TermId inside =
+      arena.And({arena.Le(zero, from), arena.Le(from, to), arena.Le(to, arena.Length(list))});
+  return If(arena, inside, changed, t);
 }
 
 TermId AxiomOfLiteral(Arena& arena, TermId t) {
@@ -113,6 +161,15 @@ std::vector<TermId> ListAxioms(Arena& arena, std::span<const TermId> formulas,
         break;
       case Op::kListSet:
         axioms.push_back(AxiomOfSet(arena, t));
+        break;
+      case Op::kListInsert:
+        axioms.push_back(AxiomOfInsert(arena, t));
+        break;
+      case Op::kListDrop:
+        axioms.push_back(AxiomOfDrop(arena, t));
+        break;
+      case Op::kListSlice:
+        axioms.push_back(AxiomOfSlice(arena, t));
         break;
       default:
         axioms.push_back(arena.Le(arena.IntNumber(0), arena.Length(t)));

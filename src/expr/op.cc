@@ -66,6 +66,12 @@ std::string_view Name(Op op) {
       return "remove";
     case Op::kListSet:
       return "set";
+    case Op::kListInsert:
+      return "insert";
+    case Op::kListDrop:
+      return "drop";
+    case Op::kListSlice:
+      return "slice";
   }
   return "";
 }

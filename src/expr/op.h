@@ -39,6 +39,9 @@ enum class Op : uint8_t {
   kListAppend,
   kListRemove,
   kListSet,
+  kListInsert,
+  kListDrop,
+  kListSlice,
 };
 
 /// Names the functions of reals that have no exact arithmetic (elementary.def is the table of them). A

@@ -127,24 +127,67 @@ bool ExprParser::AtFold() const {
          Peek(1).kind == TokenKind::kName && (Peek(2).text == "in" || Peek(2).text == ",");
 }
 
+// `all i in ID` and `any i in ID` are other words for `forall` and `exists`; `any q in [a, b]` is a choice.
+bool ExprParser::AtQuantifier() const {
+  if (At("forall") || At("exists")) return true;
+  if (!HasFolds() || Peek(1).kind != TokenKind::kName) return false;
+  if (At("all")) return Peek(2).text == "in" || Peek(2).text == ",";
+  return At("any") && Peek(2).text == "in" && (Peek(3).text == "ID" || Peek(3).text == "range");
+}
+
 ExprId ExprParser::ParseQuantifier() {
   const bool fold = AtFold();
   const Token& word = Take();
-  Expr quantifier{fold ? ExprKind::kFold : ExprKind::kQuantifier, word.span, std::string(word.text), {}, {}};
+  const std::string text(word.text == "all" ? "forall" : word.text == "any" ? "exists" : word.text);
+  Expr quantifier{fold ? ExprKind::kFold : ExprKind::kQuantifier, word.span, text, {}, {}};
+  std::vector<ExprId> ranges;
   do {
     Binder binder;
-    if (!ParseBinder(binder)) return Fail(word.span);
+    if (!ParseBinder(binder, ranges)) return Fail(word.span);
+    if (fold && !ranges.empty()) {
+      diagnostics_.Report(Kind::kSyntaxUnexpected, binder.spans[0],
+                          fmt::format("`{}` goes over robots, not over numbers", text));
+      failed_ = true;
+      return Fail(word.span);
+    }
     quantifier.binders.push_back(std::move(binder));
   } while (Accept(","));
   if (!Accept(".") && !Expect(":", "the variables of a quantifier")) return Fail(word.span);
   AllowLineBreak();
-  const ExprId body = ParseExpr();
+  ExprId body = ParseExpr();
+  for (auto range = ranges.rbegin(); range != ranges.rend(); ++range) {
+    const diag::Span span = pool_[*range].span.To(pool_[body].span);
+    body = pool_.Add({ExprKind::kBinary, span, text == "forall" ? "implies" : "and", {*range, body}, {}});
+  }
   quantifier.args = {body};
   quantifier.span = quantifier.span.To(pool_[body].span);
   return pool_.Add(std::move(quantifier));
 }
 
-bool ExprParser::ParseBinder(Binder& binder) {
+// `c in range(n)` is c in int with 0 <= c and c < n.
+ExprId ExprParser::ParseRange(const std::vector<std::string>& names) {
+  const Span span = Take().span;
+  Take();
+  const std::vector<ExprId> limits = ParseItems(")");
+  if (failed_) return Fail(span);
+  if (limits.size() != 1 && limits.size() != 2) {
+    failed_ = true;
+    diagnostics_.Report(Kind::kSyntaxUnexpected, span.To(PreviousSpan()),
+                        "`range` has an end, or a start and an end");
+    return Fail(span);
+  }
+  const ExprId from = limits.size() == 2 ? limits[0] : pool_.Add({ExprKind::kInt, span, "0", {}, {}});
+  ExprId all;
+  for (const std::string& name : names) {
+    const ExprId variable = pool_.Add({ExprKind::kName, span, name, {}, {}});
+    const ExprId both = Binary("and", pool_.Add({ExprKind::kBinary, span, "<=", {from, variable}, {}}),
+                               pool_.Add({ExprKind::kBinary, span, "<", {variable, limits.back()}, {}}));
+    all = all.valid() ? Binary("and", all, both) : both;
+  }
+  return all;
+}
+
+bool ExprParser::ParseBinder(Binder& binder, std::vector<ExprId>& ranges) {
   do {
     const Span span = Peek().span;
     std::string name = ExpectName("the name of a variable");
@@ -157,6 +200,12 @@ bool ExprParser::ParseBinder(Binder& binder) {
     return !failed_;
   }
   if (!Expect("in", "the variables of a quantifier")) return false;
+  if (HasFolds() && At("range") && Peek(1).text == "(") {
+    binder.type.name = "int";
+    binder.type.span = Peek().span;
+    ranges.push_back(ParseRange(binder.names));
+    return !failed_;
+  }
   static constexpr std::array<std::string_view, 8> kTypeWords = {"List", "Queue", "Map", "Set",
                                                                  "list", "queue", "map", "set"};
   if (AtKind(TokenKind::kName) &&
@@ -192,7 +241,7 @@ ExprId ExprParser::ParseAnd() {
 }
 
 ExprId ExprParser::ParseNot() {
-  if (At("forall") || At("exists")) {
+  if (AtQuantifier()) {
     Depth depth(*this);
     if (depth.TooDeep()) return Fail(Peek().span);
     return ParseQuantifier();
@@ -274,8 +323,13 @@ ExprId ExprParser::ParsePostfix() {
       base = pool_.Add(
           {ExprKind::kField, pool_[base].span.To(member.span), std::string(member.text), {base}, {}});
     } else if (At("[")) {
-      Take();
-      const ExprId index = ParseExpr();
+      const Span bracket = Take().span;
+      const ExprId index =
+          HasFolds() && At(":") ? pool_.Add({ExprKind::kInt, bracket, "0", {}, {}}) : ParseExpr();
+      if (HasFolds() && At(":")) {
+        base = ParseSlice(base, index);
+        continue;
+      }
       if (!Expect("]", "an index")) return Fail(pool_[base].span);
       base = pool_.Add({ExprKind::kIndex, pool_[base].span.To(PreviousSpan()), {}, {base, index}, {}});
     } else if (At("(")) {
@@ -287,6 +341,21 @@ ExprId ExprParser::ParsePostfix() {
       return base;
     }
   }
+}
+
+// `l[a:b]` calls a function that nobody else can name; without b, up to the end.
+ExprId ExprParser::ParseSlice(ExprId list, ExprId from) {
+  const Span colon = Take().span;
+  ExprId to;
+  if (At("]")) {
+    const ExprId len = pool_.Add({ExprKind::kName, colon, "len", {}, {}});
+    to = pool_.Add({ExprKind::kCall, colon, {}, {len, list}, {}});
+  } else {
+    to = ParseExpr();
+  }
+  if (!Expect("]", "a slice")) return Fail(pool_[list].span);
+  const ExprId slice = pool_.Add({ExprKind::kName, colon, std::string(kSlice), {}, {}});
+  return pool_.Add({ExprKind::kCall, pool_[list].span.To(PreviousSpan()), {}, {slice, list, from, to}, {}});
 }
 
 std::vector<ExprId> ExprParser::ParseItems(std::string_view close) {

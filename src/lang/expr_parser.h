@@ -77,6 +77,8 @@ class ExprParser {
   ExprId ParseImplies();
   ExprId ParseQuantifier();
   bool AtFold() const;
+  bool AtQuantifier() const;
+  ExprId ParseRange(const std::vector<std::string>& names);
   ExprId ParseOr();
   ExprId ParseAnd();
   ExprId ParseNot();
@@ -86,8 +88,9 @@ class ExprParser {
   ExprId ParseUnary();
   ExprId ParsePrimary();
   ExprId ParseAny();
+  ExprId ParseSlice(ExprId list, ExprId from);
   std::vector<ExprId> ParseItems(std::string_view close);
-  bool ParseBinder(Binder& binder);
+  bool ParseBinder(Binder& binder, std::vector<ExprId>& ranges);
   ExprId Binary(std::string text, ExprId a, ExprId b);
 
   int depth_ = 0;

@@ -100,6 +100,8 @@ class Printer {
       case ExprKind::kIndex:
         return fmt::format("{}[{}]", Base(e.args[0]), Print(e.args[1], 0));
       case ExprKind::kCall:
+        if (pool_[e.args[0]].text == kSlice)
+          return fmt::format("{}[{}:{}]", Base(e.args[1]), Print(e.args[2], 0), Print(e.args[3], 0));
         return fmt::format("{}({})", Base(e.args[0]), Items(e, 1));
       case ExprKind::kUnary:
         return fmt::format("{}{}", e.text == "not" ? "not " : "-", Print(e.args[0], level));

@@ -69,16 +69,17 @@ base::Result<bool> WriteCampaignTrace(const std::string& path, const CampaignTex
     robots.push_back({{"name", fmt::format("robot{}", r)}, {"radius", 0.2}});
   for (const auto& f : trial.findings)
     findings.push_back({{"wrong", history::Name(f.wrong)}, {"text", f.text}, {"line", f.entry}});
-  const json record{{"format", "rondo-trace/1"},
-                    {"engine", "campaign"},
-                    {"program_name", texts.program_name},
-                    {"program", texts.program},
-                    {"spec", texts.spec},
-                    {"fleet", texts.fleet},
-                    {"scenario", campaign::WriteScenario(trial.scenario, "")},
-                    {"wrong", trial.What()},
-                    {"findings", findings},
-                    {"robots", robots}};
+  json record{{"format", "rondo-trace/1"},
+              {"engine", "campaign"},
+              {"program_name", texts.program_name},
+              {"program", texts.program},
+              {"spec", texts.spec},
+              {"fleet", texts.fleet},
+              {"scenario", campaign::WriteScenario(trial.scenario, "")},
+              {"wrong", trial.What()},
+              {"findings", findings},
+              {"robots", robots}};
+  if (!texts.files.empty()) record["files"] = ToJson(texts.files);
   writer.Message(writer.Channel("/rondo/run", trace::kRecord, "json"), 0, record.dump());
   const uint16_t log = writer.Channel("/rondo/log", trace::kRecord, "json");
   const history::Record& lines = trial.outcome.record;
@@ -88,13 +89,15 @@ base::Result<bool> WriteCampaignTrace(const std::string& path, const CampaignTex
 }
 
 Replayed ReplayCampaign(const std::string& bytes, const json& record, workspace::Session& session) {
+  const auto kept = FilesFromJson(record.value("files", json::object()));
+  if (!kept) return {false, "the files that the trace keeps are damaged"};
   const CampaignTexts texts{sim::TextOf(record, "program_name"), sim::TextOf(record, "program"),
-                            sim::TextOf(record, "spec"), sim::TextOf(record, "fleet")};
+                            sim::TextOf(record, "spec"), sim::TextOf(record, "fleet"), *kept};
   const auto loaded = workspace::LoadKoordTexts(texts.program_name, texts.program, texts.spec, session);
   if (!loaded) return {false, "the program that the trace keeps cannot be used"};
   sim::Fleet fleet;
   if (!texts.fleet.empty())
-    fleet = sim::ReadFleet(session.sources, session.sources.Add("fleet", texts.fleet), session.diagnostics);
+    fleet = FleetFiles(*kept, session).Read(session.sources.Add("fleet", texts.fleet));
   const diag::FileId file = session.sources.Add("scenario", sim::TextOf(record, "scenario"));
   const auto scenarios = campaign::ReadScenarios(session.sources, file, session.diagnostics);
   if (session.diagnostics.has_errors() || scenarios.size() != 1)

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/result.h"
+#include "runs/fleet_files.h"
 #include "runs/replay.h"
 #include "sim/campaign/campaign.h"
 
@@ -13,6 +14,7 @@ namespace rondo::runs {
 /// Holds the texts that a run is made from.
 struct CampaignTexts {
   std::string program_name, program, spec, fleet;
+  FileContents files = {};  ///< what the fleet refers to
 };
 
 /// Writes what the robots of a run logged as MCAP: `/rondo/run` has the texts, the scenario and what is wrong;

@@ -7,6 +7,7 @@
 #include "koord/semantics/story.h"
 #include "runs/campaign_trace.h"
 #include "runs/execution_file.h"
+#include "runs/fleet_files.h"
 #include "runs/run_file.h"
 #include "runs/trace_copy.h"
 #include "sim/draw/history.h"
@@ -83,7 +84,10 @@ Replayed ReplayTrace(const std::string& bytes, workspace::Session& session, cons
   const auto loaded = workspace::LoadKoordTexts(options.program_name, options.program, options.spec, session);
   if (!loaded) return {false, "the program that the trace keeps cannot be used"};
   const diag::FileId file = session.sources.Add("fleet", options.fleet);
-  const sim::Fleet fleet = sim::ReadFleet(session.sources, file, session.diagnostics);
+  const auto kept = FilesFromJson(run.value("files", nlohmann::json::object()));
+  if (!kept) return {false, "the files that the trace keeps are damaged"};
+  if (!kept->empty()) options.files = ToJson(*kept);
+  const sim::Fleet fleet = FleetFiles(*kept, session).Read(file);
   if (session.diagnostics.has_errors()) return {false, "the fleet that the trace keeps cannot be used"};
   sim::NetworkFaults network;
   if (run.contains("network")) {

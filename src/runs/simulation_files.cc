@@ -20,12 +20,14 @@ SimulationFiles FindSimulationFiles(const std::string& file, const std::string& 
   return files;
 }
 
-void KeepTexts(const SimulationFiles& files, const workspace::Session& session,
+void KeepTexts(const SimulationFiles& files, const workspace::Session& session, const FileContents& of_fleet,
                sim::SimulationOptions& options) {
+  if (!of_fleet.empty()) options.files = ToJson(of_fleet);
   options.program_name = std::filesystem::path(files.program).filename().string();
   for (size_t f = 0; f < session.sources.size(); ++f) {
     const diag::FileId id(f);
     const std::string path(session.sources.path(id));
+    if (workspace::IsModuleFile(path)) continue;  // of the fleet
     std::string& text = path == files.program   ? options.program
                         : path == files.fleet   ? options.fleet
                         : path == files.network ? options.network_text

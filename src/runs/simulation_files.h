@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "runs/fleet_files.h"
 #include "sim/simulation.h"
 #include "workspace/session.h"
 
@@ -20,8 +21,8 @@ struct SimulationFiles {
 SimulationFiles FindSimulationFiles(const std::string& file, const std::string& spec,
                                     const std::string& fleet);
 
-/// Puts the texts of the files that were read into the options, for the trace.
-void KeepTexts(const SimulationFiles& files, const workspace::Session& session,
+/// Puts the texts of the files that were read into the options, for the trace; also what the fleet refers to.
+void KeepTexts(const SimulationFiles& files, const workspace::Session& session, const FileContents& of_fleet,
                sim::SimulationOptions& options);
 
 }  // namespace rondo::runs

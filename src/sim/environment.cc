@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "base/parallel.h"
+#include "base/uniform.h"
 #include "sim/run.h"
-#include "sim/uniform.h"
 
 namespace rondo::sim {
 
@@ -36,6 +36,13 @@ void Run::Sense(const Port& port, size_t r, Heap& heap, Word* at) const {
   const auto point = [&](const Point& p) {
     for (size_t i = 0; i < 3; ++i) at[i] = FromFloat(p[i] + 0.0);
   };
+  if (const auto& own = port.own[r]) {
+    std::array<double, 3> values{};
+    body.ReadPort(*own, std::span(values).first(own->kind == BodyPort::Kind::kPoint ? 3 : 1));
+    if (own->kind == BodyPort::Kind::kPoint) return point(values);
+    *at = own->kind == BodyPort::Kind::kBool ? static_cast<Word>(values[0] != 0) : FromFloat(values[0] + 0.0);
+    return;
+  }
   switch (port.role) {
     case PortRole::kPosition:
       point(body.position());
@@ -60,6 +67,7 @@ void Run::Sense(const Port& port, size_t r, Heap& heap, Word* at) const {
     }
     case PortRole::kTarget:
     case PortRole::kPath:
+    case PortRole::kOwn:
       break;
   }
 }
@@ -104,8 +112,17 @@ bool Run::Pass(uint64_t n, double t, double now, bool last) {
   if ((step_ % p.monitor == 0 || last) && settled_at_ >= 0) {
     Sense();
     monitor_->During(now, state_, settled_, last && networked_ == nullptr);
+    WatchModels(now);
   }
   return true;
+}
+
+// What models exclude is an assumption of every proof that rests on them.
+void Run::WatchModels(double now) {
+  for (size_t r = 0; r < bodies_.size(); ++r) {
+    for (const std::string& what : bodies_[r]->TakeBroken())
+      monitor_->Model(now, fmt::format("{} of `{}`", what, fleet_.robots[r].model), r, fleet_.robots[r].span);
+  }
 }
 
 void Run::Environment(double t) {
@@ -165,10 +182,12 @@ void Run::Scan(double now) {
     rays.range = fleet_.lidar.range;
     rays.distances.resize(static_cast<size_t>(beams));
     const Point from = bodies_[r]->position();
+    const World others = fleet_.lidar.robots ? Others(bodies_, r) : World{};
     for (int b = 0; b < beams; ++b) {
-      double d = fleet_.world.Cast(from, rays.first + b * rays.step, rays.range);
+      const double angle = rays.first + b * rays.step;
+      double d = std::min(fleet_.world.Cast(from, angle, rays.range), others.Cast(from, angle, rays.range));
       if (std::isfinite(d)) {
-        if (fleet_.lidar.noise > 0) d += fleet_.lidar.noise * Normal(noise_[r]);
+        if (fleet_.lidar.noise > 0) d += fleet_.lidar.noise * base::Normal(noise_[r]);
         if (fleet_.lidar.resolution > 0)
           d = std::round(d / fleet_.lidar.resolution) * fleet_.lidar.resolution;
         d = std::max(d, 0.0);

@@ -65,6 +65,7 @@ void Monitor::During(double time, std::span<Word> state, std::span<const Word> s
   // Formulas only read.
   auto* const before = const_cast<Word*>(settled.data());  // NOLINT
   for (const PromiseCode& p : team_.promises()) {
+    if (p.at_end && !between_rounds) continue;
     for (size_t r = 0; r < team_.robots(); ++r) {
       machine.SetMemory(before);
       if (p.when != 0 && !machine.RunFormula(p.when, r)) continue;
@@ -75,6 +76,10 @@ void Monitor::During(double time, std::span<Word> state, std::span<const Word> s
     }
   }
   Settled(time, state, between_rounds);
+}
+
+void Monitor::Model(double time, const std::string& what, size_t robot, diag::Span span) {
+  Violated(time, what, static_cast<int>(robot), span, Kind::kKoordAssumptionBroken);
 }
 
 void Monitor::Summary(double time) {

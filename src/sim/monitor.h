@@ -30,6 +30,8 @@ class Monitor {
   /// @param between_rounds  it is the last moment of the round.
   void During(double time, std::span<koord::semantics::Word> state,
               std::span<const koord::semantics::Word> settled, bool between_rounds = true);
+  /// Notes that a robot did what its model excludes: `temperature` in [60, 82] does not hold.
+  void Model(double time, const std::string& what, size_t robot, diag::Span span);
   /// Notes the first call since the last check that returned what a summary excludes, if there was one.
   void Summary(double time);
 

@@ -6,7 +6,7 @@
 
 #include "base/check.h"
 #include "base/mixed.h"
-#include "sim/uniform.h"
+#include "base/uniform.h"
 
 namespace rondo::sim {
 
@@ -59,7 +59,7 @@ Networked::Networked(const koord::Model& model, const Fleet& fleet, const Simula
 // Which event a robot runs, as the fleet says; of the values of its `any`, a random one.
 size_t Networked::Choose(uint64_t round, size_t robot, std::span<const Effect> effects) const {
   std::mt19937_64 random(base::Mixed(options_.seed ^ base::Mixed(round * 1024 + robot)));
-  if (round > 0 && !effects[0].urgent && fleet_.skip > 0 && Uniform(random) < fleet_.skip)
+  if (round > 0 && !effects[0].urgent && fleet_.skip > 0 && base::Uniform(random) < fleet_.skip)
     return effects.size();
   std::vector<size_t> firsts;  // of the events
   for (size_t i = 0; i < effects.size(); ++i) {

@@ -92,10 +92,10 @@ void Run::Committed(uint64_t round, const Node& node) {
 void Run::Acts(size_t robot, Heap& heap, const Node& node, const std::vector<koord::node::Cell>& commands) {
   const double t = networked_->now();
   for (const Port& port : ports_) {
-    if (port.role != PortRole::kTarget && port.role != PortRole::kPath) continue;
+    if (!IsActuator(port)) continue;
     const bool driven = std::ranges::any_of(
         commands, [&](const koord::node::Cell& cell) { return cell.variable == port.variable; });
-    if (driven) Follow(port, robot, heap, node.state().data() + At(port, robot), t);
+    if (driven) Obey(port, robot, heap, node.state().data() + At(port, robot), t);
   }
   if (const auto fallen = std::exchange(fallen_[robot], {}); !fallen.empty())
     Sets(robot, node, node.real(), fallen);
@@ -107,8 +107,8 @@ void Run::FallsBack(size_t robot, const Node& node, const std::vector<koord::nod
   fallen_[robot] = covered;
   Sets(robot, node, node.real(), covered);
   for (const Port& port : ports_) {
-    if (model_.FallsBack(port.variable) && (port.role == PortRole::kTarget || port.role == PortRole::kPath))
-      Follow(port, robot, team_->heap(), state_.data() + At(port, robot), networked_->now());
+    if (model_.FallsBack(port.variable) && IsActuator(port))
+      Obey(port, robot, team_->heap(), state_.data() + At(port, robot), networked_->now());
   }
 }
 

@@ -1,15 +1,17 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "diag/diagnostic.h"
 #include "koord/check/model.h"
+#include "sim/fleet/fleet.h"
 
 /// Connects the ports of programs with simulated bodies.
 namespace rondo::sim {
 
-/// Names what a port of a program means to a simulated body. Points are in the world frame, in metres; angles
-/// in radians.
+/// Names what a port of a program means to every body. Points are in the world frame, in metres; angles in
+/// radians.
 enum class PortRole : uint8_t {
   kPosition,  ///< a sensor, a point: where the body is (`psn`, `position`)
   kVelocity,  ///< a sensor, a point: its velocity in m/s (`velocity`)
@@ -18,14 +20,18 @@ enum class PortRole : uint8_t {
   kScans,     ///< a sensor, a list of pairs of a position and a scan: those of the last round
   kTarget,    ///< an actuator, a point: where to go
   kPath,      ///< an actuator, a list of points: which way to go
+  kOwn,       ///< only what the models of the robots say
 };
 /// Holds a port of the program and what it means.
 struct Port {
   size_t variable;
   PortRole role;
+  /// By robot: the port that its model declares, which comes first.
+  std::vector<std::optional<BodyPort>> own;
 };
 
-/// Returns the ports of the program, by name and type. Reports each one that no body has.
-std::vector<Port> FindPorts(const koord::Model& model, diag::Diagnostics& diagnostics);
+/// Returns the ports of the program, by name and type. Reports each one that a robot lacks.
+std::vector<Port> FindPorts(const koord::Model& model, const std::vector<FleetRobot>& robots,
+                            diag::Diagnostics& diagnostics);
 
 }  // namespace rondo::sim

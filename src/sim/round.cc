@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/uniform.h"
 #include "sim/run.h"
-#include "sim/uniform.h"
 
 namespace rondo::sim {
 
@@ -22,7 +22,7 @@ void Run::Round(uint64_t k) {
     if (enabled.empty()) continue;
     idle = false;
     const bool urgent = team_->events()[enabled[0]].urgent;
-    if (!urgent && fleet_.skip > 0 && Uniform(random_) < fleet_.skip) continue;
+    if (!urgent && fleet_.skip > 0 && base::Uniform(random_) < fleet_.skip) continue;
     const uint32_t event = Choose(enabled, k, r);
     switch (round.Run(r, event)) {
       case RoundExecution::Ran::kDone:
@@ -53,9 +53,7 @@ void Run::Round(uint64_t k) {
 }
 
 bool Run::AtRest() const {
-  constexpr double kSlow = 1e-3;  // m/s
-  return std::ranges::all_of(bodies_,
-                             [](const auto& body) { return Distance(body->velocity(), Point{}) < kSlow; });
+  return std::ranges::all_of(bodies_, [](const auto& body) { return body->AtRest(); });
 }
 
 std::vector<size_t> Run::Order(uint64_t k) {
@@ -109,15 +107,26 @@ void Run::Command(const std::vector<RoundExecution::Write>& writes, double t) {
     for (size_t p = 0; p < ports_.size(); ++p) {
       const auto& place = layout[ports_[p].variable];
       if (offset < place.at || offset >= place.at + place.width) continue;
-      if (ports_[p].role == PortRole::kTarget || ports_[p].role == PortRole::kPath) told.emplace(robot, p);
+      if (IsActuator(ports_[p])) told.emplace(robot, p);
     }
   }
   for (const auto& [robot, p] : told)
-    Follow(ports_[p], robot, team_->heap(), state_.data() + At(ports_[p], robot), t);
+    Obey(ports_[p], robot, team_->heap(), state_.data() + At(ports_[p], robot), t);
+}
+
+bool Run::IsActuator(const Port& port) const {
+  return model_.variables[port.variable].kind == koord::VariableKind::kActuator;
 }
 
 // A path is a new command each time that it is written; a target is one if it is another.
-void Run::Follow(const Port& port, size_t robot, const Heap& heap, const Word* at, double t) {
+void Run::Obey(const Port& port, size_t robot, const Heap& heap, const Word* at, double t) {
+  if (const auto& own = port.own[robot]) {
+    std::array<double, 3> values{};
+    const size_t parts = own->kind == BodyPort::Kind::kPoint ? 3 : 1;
+    for (size_t i = 0; i < parts; ++i) values[i] = koord::semantics::ToFloat(at[i]);
+    bodies_[robot]->WritePort(*own, std::span(values).first(parts));
+    return;
+  }
   std::vector<Point> path;
   if (port.role == PortRole::kPath) {
     path = DecodePath(heap, *at);

@@ -56,7 +56,8 @@ class Run : Stage {
   std::vector<size_t> Order(uint64_t k);
   uint32_t Choose(std::span<const uint32_t> enabled, uint64_t k, size_t robot);
   void Command(const std::vector<koord::semantics::RoundExecution::Write>& writes, double t);
-  void Follow(const Port& port, size_t robot, const Heap& heap, const Word* at, double t);
+  bool IsActuator(const Port& port) const;
+  void Obey(const Port& port, size_t robot, const Heap& heap, const Word* at, double t);
   void Say(double t, size_t robot, const std::string& text);
   void Fails(size_t robot, const koord::node::Failure& failure, double t);
   std::optional<GridMap> SharedMap() const;
@@ -75,6 +76,7 @@ class Run : Stage {
   bool Move(uint64_t n, double dt, double t);
   void Scan(double now);
   void Observe(double now);
+  void WatchModels(double now);
 
   // Rounds over a network.
   void OverNetwork(double end);

@@ -93,6 +93,14 @@ bool Run::MakeTeam() {
                 fmt::format("runs are not checked against `{}`", part.name))
         .Under(part.reason);
   }
+  for (const auto& promise : team_->promises()) {
+    if (!promise.at_end || options_.network == nullptr) continue;
+    report_.unchecked.push_back(promise.name);
+    diagnostics_
+        .Report(Kind::kKoordNotChecked, promise.span,
+                fmt::format("runs are not checked against `{}`", promise.name))
+        .Under("over a network, rounds last as long as they take");
+  }
   return true;
 }
 
@@ -100,8 +108,11 @@ bool Run::MakeRobots() {
   std::vector<double> radii;
   for (size_t r = 0; r < fleet_.robots.size(); ++r) {
     const FleetRobot& robot = fleet_.robots[r];
-    auto body = MakeBody(robot.model);
-    for (const auto& [name, value] : robot.parameters) body->Set(name, value);
+    auto body = robot.make();
+    if (robot.from.empty()) {
+      for (const auto& [name, value] : robot.parameters) body->Set(name, value);
+    }
+    body->Seed(options_.seed * 0x9e3779b97f4a7c15U + 0x51ed2701U * (r + 1));
     body->Place(robot.position, robot.yaw);
     radii.push_back(body->radius());
     bodies_.push_back(std::move(body));
@@ -127,6 +138,7 @@ bool Run::BeforeInit() {
   for (size_t r = 0; r < bodies_.size(); ++r) {
     const Point p = bodies_[r]->position();
     for (const Port& port : ports_) {
+      if (port.own[r] && IsActuator(port)) Sense(port, r, team_->heap(), &state_[At(port, r)]);
       if (port.role == PortRole::kPath) state_[At(port, r)] = EncodePath(team_->heap(), {p});
       if (port.role == PortRole::kTarget) {
         for (size_t i = 0; i < 3; ++i) state_[At(port, r) + i] = FromFloat(p[i] + 0.0);
@@ -231,6 +243,7 @@ void Run::Record() {
            {"duration", options_.duration},
            {"delta", fleet_.delta},
            {"robots", robots}};
+  if (!options_.files.is_null()) run["files"] = options_.files;
   if (options_.network != nullptr) run["network"] = options_.network_text;
   recorder_.Run(run);
   recorder_.World(fleet_);

@@ -10,7 +10,7 @@ namespace rondo::sim {
 using diag::Kind;
 
 SimulationReport Run::Go() {
-  ports_ = FindPorts(model_, diagnostics_);
+  ports_ = FindPorts(model_, fleet_.robots, diagnostics_);
   const bool maps =
       std::any_of(model_.variables.begin(), model_.variables.end(), [&](const koord::Variable& v) {
         return v.kind == koord::VariableKind::kAllwrite && model_.types.Is(v.type, lang::TypeKind::kOpaque);

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,6 +26,7 @@ struct SimulationOptions {
   unsigned jobs = 0;    ///< threads; 0: one for each core. The result does not depend on it
   /// Holds what the trace keeps about where the run came from: texts of program, specification and fleet.
   std::string program, spec, fleet, program_name;
+  nlohmann::json files;  ///< what the fleet refers to; null if it refers to nothing
   /// Lets the robots agree on their rounds over this network, by the cores that robots run; nullptr: they
   /// share one store. `network_text` is the file that it comes from.
   const NetworkFaults* network = nullptr;

@@ -51,6 +51,9 @@ void ForEachPlace(const Arena& arena, TermId t, const std::function<void(Place, 
     case Op::kListAppend:
     case Op::kListRemove:
     case Op::kListSet:
+    case Op::kListInsert:
+    case Op::kListDrop:
+    case Op::kListSlice:
     case Op::kListLength:
     case Op::kListAt: {
       const expr::SortId list = arena.op(t) == Op::kListMake ? arena.sort_of(t) : arena.sort_of(args[0]);

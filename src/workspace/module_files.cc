@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <set>
 
-#include "base/file.h"
 #include "choreo/graph/lower.h"
 #include "choreo/process/typing.h"
 #include "choreo/project/project.h"
@@ -55,7 +54,7 @@ class Reader {
   void Import(const choreo::ImportDef& import, const fs::path& folder) {
     const std::string file = (folder / import.path).lexically_normal().string();
     if (!IsNew(file)) return;
-    auto text = base::ReadFile(file);
+    auto text = session_.read(file);
     if (!text.ok()) {
       session_.diagnostics
           .Report(diag::Kind::kChoreoImport, import.span, fmt::format("cannot read `{}`", file))

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "base/file.h"
-
 namespace rondo::workspace {
 
 std::optional<diag::FileId> ReadSource(const std::string& path, Session& session) {
-  auto text = base::ReadFile(path);
+  auto text = session.read(path);
   if (text.ok()) return session.sources.Add(path, std::move(text).value());
   session.diagnostics.Report(diag::Kind::kFileUnreadable, {},
                              fmt::format("cannot read `{}`: {}", path, text.error().message));

@@ -144,6 +144,9 @@ std::string SmtPrinter::Print(TermId t, bool definition) const {
     case Op::kListAppend:
     case Op::kListRemove:
     case Op::kListSet:
+    case Op::kListInsert:
+    case Op::kListDrop:
+    case Op::kListSlice:
       return call(Quoted(ListFunctionName(arena_, term.op, arena_.sort_of(args[0]), args.size())));
   }
   return "";
@@ -182,9 +185,12 @@ class Declarations {
         break;
       case Op::kListAppend:
       case Op::kListRemove:
+      case Op::kListDrop:
         list_function(term.sort, {term.sort, arena_.sort_of(args[1])}, term.sort);
         break;
       case Op::kListSet:
+      case Op::kListInsert:
+      case Op::kListSlice:
         list_function(term.sort, {term.sort, arena_.Int(), arena_.sort_of(args[2])}, term.sort);
         break;
       default:

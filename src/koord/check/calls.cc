@@ -19,12 +19,13 @@ struct BuiltinName {
   Builtin builtin;
 };
 constexpr BuiltinName kBuiltins[] = {
-    {"pos", Builtin::kPos},      {"pos3d", Builtin::kPos},   {"mid", Builtin::kMid},
-    {"midpoint", Builtin::kMid}, {"dist", Builtin::kDist},   {"len", Builtin::kLen},
-    {"abs", Builtin::kAbs},      {"min", Builtin::kMin},     {"max", Builtin::kMax},
-    {"old", Builtin::kOld},      {"rect", Builtin::kRect},   {"grid", Builtin::kGrid},
-    {"sqrt", Builtin::kSqrt},    {"hypot", Builtin::kHypot}, {"floor", Builtin::kFloor},
-    {"ceil", Builtin::kCeil},    {"round", Builtin::kRound}, {"sign", Builtin::kSign}};
+    {"pos", Builtin::kPos},         {"pos3d", Builtin::kPos},   {"mid", Builtin::kMid},
+    {"midpoint", Builtin::kMid},    {"dist", Builtin::kDist},   {"len", Builtin::kLen},
+    {"abs", Builtin::kAbs},         {"min", Builtin::kMin},     {"max", Builtin::kMax},
+    {"old", Builtin::kOld},         {"rect", Builtin::kRect},   {"grid", Builtin::kGrid},
+    {"sqrt", Builtin::kSqrt},       {"hypot", Builtin::kHypot}, {"floor", Builtin::kFloor},
+    {"ceil", Builtin::kCeil},       {"round", Builtin::kRound}, {"sign", Builtin::kSign},
+    {lang::kSlice, Builtin::kSlice}};
 
 }  // namespace
 
@@ -190,32 +191,49 @@ TypeId Checker::CallMethod(ExprId id, const lang::Expr& e) {
   const lang::Expr& callee = exprs_[e.args[0]];
   const TypeId list = Expr(callee.args[0]);
   static const std::map<std::string, Builtin> kMethods{
-      {"append", Builtin::kAppend}, {"add", Builtin::kAppend},  {"push", Builtin::kAppend},
-      {"remove", Builtin::kRemove}, {"clear", Builtin::kClear}, {"contains", Builtin::kContains},
-      {"front", Builtin::kFront}};
+      {"append", Builtin::kAppend}, {"add", Builtin::kAppend},    {"push", Builtin::kAppend},
+      {"remove", Builtin::kRemove}, {"clear", Builtin::kClear},   {"contains", Builtin::kContains},
+      {"front", Builtin::kFront},   {"insert", Builtin::kInsert}, {"pop", Builtin::kPop}};
   const auto method = kMethods.find(callee.text);
   if (method == kMethods.end()) {
     auto& report = diagnostics_.Report(Kind::kKoordNotCallable, callee.span,
                                        fmt::format("there is no method `{}`", callee.text));
-    report.Help(callee.text == "pop"
-                    ? "write `x = q.front()` and then `q.remove(x)`"
-                    : "lists have `append` (or `push`), `remove`, `clear`, `contains` and `front`");
+    report.Help(
+        "lists have `append` (or `push`), `insert`, `remove`, `pop`, `clear`, `contains` and `front`");
     for (size_t i = 1; i < e.args.size(); ++i) Expr(e.args[i]);
     return types.error();
   }
   const Builtin builtin = method->second;
   Set(id, RefKind::kBuiltin, static_cast<size_t>(builtin));
-  const size_t arguments = builtin == Builtin::kClear || builtin == Builtin::kFront ? 0 : 1;
-  if (!Arity(e, arguments, arguments, callee.text)) return types.error();
+  const size_t most = builtin == Builtin::kClear || builtin == Builtin::kFront ? 0
+                      : builtin == Builtin::kInsert                            ? 2
+                                                                               : 1;
+  if (!Arity(e, builtin == Builtin::kPop ? 0 : most, most, callee.text)) return types.error();
   const TypeId element = types.FreshVariable();
   if (!types.Unify(list, types.List(element))) {
     return Mismatch(exprs_[callee.args[0]].span,
                     fmt::format("`{}` needs a list, not a `{}`", callee.text, types.Name(list)));
   }
-  if (arguments == 1) NeedType(e.args[1], element, fmt::format("the argument of `{}`", callee.text));
+  if (builtin == Builtin::kPop && e.args.size() == 1 && !IsQueue(callee.args[0])) {
+    // Elsewhere, it is the last item of a list that goes.
+    diagnostics_
+        .Report(Kind::kKoordNotCallable, e.span,
+                "`pop()` takes away the first item of a `Queue`, and this is a `List`")
+        .Help("`l.pop(0)` takes away the first item, `l.pop(len(l) - 1)` the last");
+  }
+  const bool indexed = builtin == Builtin::kInsert || builtin == Builtin::kPop;
+  if (indexed && e.args.size() > 1) NeedType(e.args[1], types.integer(), "an index");
+  if (most > 0 && builtin != Builtin::kPop)
+    NeedType(e.args[most], element, fmt::format("the argument of `{}`", callee.text));
   if (builtin == Builtin::kFront) return element;
   if (builtin == Builtin::kContains) return types.boolean();
   return types.error();  // a statement, not a value
+}
+
+// Is it a variable that is declared as a `Queue`? Queues and lists are one type.
+bool Checker::IsQueue(ExprId list) const {
+  const Ref ref = model_.RefOf(list);
+  return (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell) && queues_.contains(ref.index);
 }
 
 TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
@@ -295,7 +313,8 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
     case Builtin::kOld: {
       if (!Arity(e, 1, 1, name)) return types.error();
       if (!old_allowed_) {
-        diagnostics_.Report(Kind::kKoordSpecScope, e.span, "`old` has a meaning only behind `always`")
+        diagnostics_
+            .Report(Kind::kKoordSpecScope, e.span, "`old` has a meaning only behind `always` and `finally`")
             .Help("there it is the value at the end of the program transition");
       }
       return Expr(e.args[1]);
@@ -320,7 +339,18 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
       NeedType(e.args[3], types.Is(element, TypeKind::kInt) ? element : types.real(), "the step of a grid");
       return types.List(element);
     }
+    case Builtin::kSlice: {
+      const TypeId list = Expr(e.args[1]);
+      if (!types.Unify(list, types.List(types.FreshVariable())))
+        return Mismatch(exprs_[e.args[1]].span,
+                        fmt::format("only lists have slices, not a `{}`", types.Name(list)));
+      NeedType(e.args[2], types.integer(), "the start of a slice");
+      NeedType(e.args[3], types.integer(), "the end of a slice");
+      return list;
+    }
     case Builtin::kRemove:
+    case Builtin::kInsert:
+    case Builtin::kPop:
     case Builtin::kClear:
     case Builtin::kContains:
     case Builtin::kFront:

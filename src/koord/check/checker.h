@@ -54,6 +54,8 @@ class Checker {
   TypeId Comparison(const lang::Expr& e, TypeId a, TypeId b);
   TypeId Membership(const lang::Expr& e, TypeId a);
   TypeId Quantifier(ExprId id, const lang::Expr& e);
+  bool IsQueue(ExprId list) const;
+  bool Bounds(const lang::Expr& quantifier, const std::vector<std::string>& names) const;
   TypeId Fold(ExprId id, const lang::Expr& e);  // folds.cc
   TypeId Conditional(const lang::Expr& e);
   TypeId Any(const lang::Expr& e);
@@ -123,6 +125,7 @@ class Checker {
   diag::Diagnostics& diagnostics_;
   Model model_;
 
+  std::set<size_t> queues_;  ///< variables that are declared as a `Queue`
   std::map<std::string, diag::Span> claimed_;
   std::set<std::string> modules_;
   std::map<std::string, std::pair<TypeId, uint32_t>> enum_members_;

@@ -235,6 +235,7 @@ void Checker::DeclareVariable(VariableKind kind, const std::string& module, cons
     variable.function = static_cast<int>(model_.functions.size());
     model_.functions.push_back(std::move(function));
   }
+  if (decl.type.name == "Queue" || decl.type.name == "queue") queues_.insert(model_.variables.size());
   model_.variables.push_back(std::move(variable));
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <utility>
 
 #include "koord/check/checker.h"
@@ -290,6 +291,36 @@ std::optional<TypeId> Checker::TypeNamed(const std::string& word) const {
   return std::nullopt;
 }
 
+// Does what the quantifier's body supposes bound these numbers from both sides?
+bool Checker::Bounds(const lang::Expr& quantifier, const std::vector<std::string>& names) const {
+  std::vector<ExprId> conditions;
+  const std::function<void(ExprId)> collect = [&](ExprId id) {
+    const lang::Expr& e = exprs_[id];
+    if (e.kind == ExprKind::kBinary && e.text == "and") {
+      for (const ExprId arg : e.args) collect(arg);
+    } else {
+      conditions.push_back(id);
+    }
+  };
+  ExprId body = quantifier.args[0];
+  if (quantifier.text == "exists") collect(body);
+  while (quantifier.text == "forall" && exprs_[body].kind == ExprKind::kBinary &&
+         exprs_[body].text == "implies") {
+    collect(exprs_[body].args[0]);
+    body = exprs_[body].args[1];
+  }
+  const auto bounded = [&](const std::string& name, bool above) {
+    return std::ranges::any_of(conditions, [&](ExprId id) {
+      const lang::Expr& e = exprs_[id];
+      if (e.kind != ExprKind::kBinary || (e.text[0] != '<' && e.text[0] != '>')) return false;
+      const size_t side = (e.text[0] == '<') == above ? 0 : 1;
+      return exprs_[e.args[side]].kind == ExprKind::kName && exprs_[e.args[side]].text == name;
+    });
+  };
+  return std::ranges::all_of(
+      names, [&](const std::string& name) { return bounded(name, true) && bounded(name, false); });
+}
+
 TypeId Checker::Quantifier(ExprId id, const lang::Expr& e) {
   auto& types = model_.types;
   const size_t depth = scope_.size();
@@ -323,9 +354,12 @@ TypeId Checker::Quantifier(ExprId id, const lang::Expr& e) {
         type = types.error();
       }
     }
-    if (kind == DomainKind::kType && place_ != Place::kSpec) {
-      diagnostics_.Report(Kind::kKoordSpecScope, e.span, "a program can only range over robots and lists")
-          .Help("a robot cannot try every value of a type; specifications can");
+    if (kind == DomainKind::kType && place_ != Place::kSpec &&
+        !(types.Is(type, TypeKind::kInt) && Bounds(e, binder.names))) {
+      diagnostics_
+          .Report(Kind::kKoordSpecScope, e.span,
+                  "a program can only range over robots, lists and ranges of numbers")
+          .Help("a robot cannot try every value of a type; `forall c in range(n): ...` tries 0 .. n - 1");
     }
     std::vector<uint32_t> bound;
     for (size_t i = 0; i < binder.names.size(); ++i)

@@ -89,6 +89,9 @@ enum class Builtin : uint8_t {
   kClear,
   kContains,
   kFront,  ///< the first item
+  kInsert,
+  kPop,    ///< takes away the item at an index, or the first of a queue
+  kSlice,  ///< `l[a:b]`
   kOld,
   kRecord,  ///< `Order(1, p)`: a value of the record type that is the expression's
   kSqrt,

@@ -84,7 +84,7 @@ bool UsesOld(const Model& model, ExprId id) {
 }
 
 bool HoldsAlways(const Model& model, const AssumeDef& def) {
-  return !def.when.valid() && !UsesOld(model, def.body);
+  return !def.when.valid() && !def.at_end && !UsesOld(model, def.body);
 }
 
 }  // namespace rondo::koord

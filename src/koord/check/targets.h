@@ -14,7 +14,8 @@ inline ExprId RootOf(const Model& model, ExprId target) {
 
 /// Reports whether a method writes the list that it is called on.
 constexpr bool WritesList(Builtin method) {
-  return method == Builtin::kRemove || method == Builtin::kAppend || method == Builtin::kClear;
+  return method == Builtin::kRemove || method == Builtin::kAppend || method == Builtin::kClear ||
+         method == Builtin::kInsert || method == Builtin::kPop;
 }
 
 }  // namespace rondo::koord

@@ -125,11 +125,14 @@ class Builder {
       if (symbol != settled.value[v]) values.emplace(symbol, settled.value[v]);
     }
     instance.contract.pre = expr::Substitute(arena_, instance.contract.pre, values);
-    instance.contract.during = expr::Substitute(arena_, promise.promise, values);
-    instance.contract.post = instance.contract.assume = arena_.True();
+    const TermId promised = expr::Substitute(arena_, promise.promise, values);
+    instance.contract.during = promise.def->at_end ? arena_.True() : promised;
+    instance.contract.post = promise.def->at_end ? promised : arena_.True();
+    instance.least = *instance.duration;
+    instance.contract.assume = arena_.True();
     instance.contract.modifies.assign(body_.states.size(), true);
     instance.visible = visible_;
-    const auto mentioned = robot::VariablesOf(arena_, {instance.contract.during});
+    const auto mentioned = robot::VariablesOf(arena_, {promised});
     for (const auto& [state, copy] : copies_) {
       if (mentioned.contains(copy)) instance.copies.emplace_back(copy, state);
     }
@@ -147,7 +150,7 @@ class Builder {
                                          arena_.number(*v.most).ToDouble()));
       }
     }
-    const auto terms = robot::VariablesOf(arena_, {instance.contract.pre, instance.contract.during});
+    const auto terms = robot::VariablesOf(arena_, {instance.contract.pre, promised});
     for (size_t v = 0; v < model_.variables.size(); ++v) {
       const Variable& variable = model_.variables[v];
       if (variable.kind != VariableKind::kParam) continue;
@@ -178,6 +181,7 @@ class Builder {
     out.made.problem.name = promise.name;
     for (reach::Claim& claim : out.made.problem.claims) {
       if (claim.name == "during") claim.name = "always";
+      if (claim.name == "post") claim.name = "finally";
     }
     return "";
   }

@@ -94,6 +94,7 @@ void Reporter::NeverEnabled(size_t action, const std::vector<std::string>& core)
 }
 
 void Reporter::Unrealisable(size_t p) {
+  if (problems_.promises()[p].def->at_end) return;  // nothing is promised at once
   // Only if a small team shows it with every quantifier in place.
   for (int64_t n = 1; n <= 2; ++n) {
     expr::Arena arena;

@@ -208,6 +208,7 @@ class Replay {
         if (!machine.RunFormula(fact.entry, r)) return Differs(fmt::format("`{}` is violated", fact.name));
       }
       for (const semantics::PromiseCode& promise : team_->promises()) {
+        if (promise.at_end && !team_->invariants()[invariant_].at_rounds) continue;
         machine.SetMemory(settled.data(), settled.data());
         if (promise.when != 0 && !machine.RunFormula(promise.when, r)) continue;
         machine.SetMemory(end_.data(), settled.data());
@@ -320,6 +321,7 @@ class Replay {
     }
     if (may_rest && Same(r, sensors_, from, to)) return "";
     for (const semantics::PromiseCode& promise : team_->promises()) {
+      if (promise.at_end) continue;  // its actuators changed on the way
       machine.SetMemory(from.data());
       if (promise.when != 0 && !machine.RunFormula(promise.when, r)) continue;
       machine.SetMemory(to.data(), from.data());

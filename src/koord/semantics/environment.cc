@@ -66,13 +66,14 @@ bool Environment::Values(size_t v, size_t robot, std::vector<Word>& values) {
   return false;
 }
 
-bool Environment::Allowed(size_t robot, const Word* old) {
+bool Environment::Allowed(size_t robot, const Word* old, bool over) {
   Machine& machine = team_.machine();
   machine.SetMemory(memory_.data(), old);
   for (const FormulaCode& fact : team_.port_facts()) {
     if (!machine.RunFormula(fact.entry, robot)) return false;
   }
   for (const PromiseCode& promise : team_.promises()) {
+    if (promise.at_end && !over) continue;
     if (promise.when != 0) {
       machine.SetMemory(const_cast<Word*>(old), old);  // NOLINT: formulas do not write
       const bool applies = machine.RunFormula(promise.when, robot);
@@ -84,7 +85,7 @@ bool Environment::Allowed(size_t robot, const Word* old) {
   return true;
 }
 
-bool Environment::Move(std::span<const Word> settled, const Visit& visit) {
+bool Environment::Move(std::span<const Word> settled, bool over, const Visit& visit) {
   stuck_ = -1;
   old_.assign(settled.begin(), settled.end());
   memory_ = old_;
@@ -101,7 +102,7 @@ bool Environment::Move(std::span<const Word> settled, const Visit& visit) {
     const uint32_t block = team_.layout().block(r);
     const std::function<void(size_t)> choose = [&](size_t k) {
       if (k == sensors_.size()) {
-        if (!Allowed(r, old_.data())) return;
+        if (!Allowed(r, old_.data(), over)) return;
         for (const Choice& s : sensors_)
           allowed_[r].insert(allowed_[r].end(), memory_.begin() + block + s.at,
                              memory_.begin() + block + s.at + s.width);

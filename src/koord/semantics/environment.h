@@ -23,7 +23,8 @@ class Environment {
   /// Calls `visit` for each state that the environment can make of `settled`, the end of the program
   /// transition. Returns false if `visit` did. Visits nothing if a robot is `stuck` or declared values have a
   /// `fault`.
-  bool Move(std::span<const Word> settled, const Visit& visit);
+  /// @param over  the round is: what is promised `finally` holds, too.
+  bool Move(std::span<const Word> settled, bool over, const Visit& visit);
   /// Returns the first robot for whose sensors the last `Move` found no values that the assumptions allow; -1
   /// if there is none.
   int stuck() const { return stuck_; }
@@ -47,7 +48,7 @@ class Environment {
     uint32_t width;
   };
   bool Values(size_t variable, size_t robot, std::vector<Word>& values);
-  bool Allowed(size_t robot, const Word* old);
+  bool Allowed(size_t robot, const Word* old, bool over);
   bool Product(size_t robot, const Visit& visit);
   bool Initialise(size_t index, size_t robot, const Visit& visit);
   bool Assign(const std::vector<InitialCode>& code);

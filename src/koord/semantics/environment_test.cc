@@ -54,7 +54,7 @@ Senses Heats(const std::string& text, size_t robots) {
   const size_t heat = loaded.Find("Room.heat");
   for (size_t r = 0; r < robots; ++r) state[team->layout().Address(heat, r)] = 2;
   Senses senses;
-  environment.Move(state, [&](std::span<const Word> moved) {
+  environment.Move(state, true, [&](std::span<const Word> moved) {
     std::vector<int64_t> values;
     for (size_t r = 0; r < robots; ++r) values.push_back(ToInt(moved[team->layout().Address(heat, r)]));
     senses.insert(std::move(values));
@@ -89,7 +89,7 @@ TEST(Environment, ARobotWithoutAnAllowedValueIsStuck) {
   const auto team = loaded.MakeTeam(2);
   Environment environment(*team, loaded.diagnostics);
   bool visited = false;
-  environment.Move(team->blank(), [&](std::span<const Word>) { return visited = true; });
+  environment.Move(team->blank(), true, [&](std::span<const Word>) { return visited = true; });
   EXPECT_FALSE(visited);
   EXPECT_EQ(environment.stuck(), 1);
 }
@@ -102,7 +102,7 @@ TEST(Environment, OnlySensorsMove) {
   state[team->layout().Address(loaded.Find("Room.power"), 0)] = 7;
   state[team->layout().Address(loaded.Find("n"), 0)] = 8;
   size_t visits = 0;
-  environment.Move(state, [&](std::span<const Word> moved) {
+  environment.Move(state, true, [&](std::span<const Word> moved) {
     EXPECT_EQ(moved[team->layout().Address(loaded.Find("Room.power"), 0)], 7U);
     EXPECT_EQ(moved[team->layout().Address(loaded.Find("n"), 0)], 8U);
     return ++visits > 0;

@@ -167,7 +167,18 @@ Broken System::Program(std::span<const Word> state, const explore::Visit& visit)
 Broken System::Expand(std::span<const Word> state, Word phase, const explore::Visit& visit) {
   if (phase == 0) return Program(state, visit);
   Broken broken;
-  environment_.Move(state, [&](std::span<const Word> moved) { return Emit(moved, 0, visit, broken); });
+  // Before the round is over there may be states that it cannot end in; only what breaks something in them counts.
+  if (std::ranges::any_of(team_.promises(), &PromiseCode::at_end)) {
+    environment_.Move(state, false, [&](std::span<const Word> moved) {
+      const int violated = Violated(moved, false);
+      if (violated < 0) return true;
+      Emit(moved, 0, visit, broken);
+      broken = {violated, true};
+      return false;
+    });
+    if (broken.property >= 0) return broken;
+  }
+  environment_.Move(state, true, [&](std::span<const Word> moved) { return Emit(moved, 0, visit, broken); });
   if (environment_.fault() != Fault::kNone)
     return Failure(environment_.fault(), environment_.fault_span(), 0, -1);
   if (environment_.stuck() >= 0 && !stuck_) stuck_ = static_cast<size_t>(environment_.stuck());
@@ -194,7 +205,7 @@ bool System::Deadlocked(std::span<const Word> packed) {
   bool changes = false;
   if (team_.has_sensors()) {
     const std::vector<Word> here = state_;
-    environment_.Move(here, [&](std::span<const Word> moved) {
+    environment_.Move(here, true, [&](std::span<const Word> moved) {
       changes = !std::equal(moved.begin(), moved.end(), here.begin());
       return !changes;
     });

@@ -275,7 +275,7 @@ void Team::Specification(Compiler& compiler) {
           add(port_facts_, name, def->span, def->body);
           break;
         }
-        PromiseCode promise{name, def->span, 0, 0};
+        PromiseCode promise{name, def->span, 0, 0, def->at_end};
         if (def->when.valid()) promise.when = compiler.Formula(def->when);
         promise.always = compiler.Formula(def->body);
         if (const auto bad = compiler.TakeUnsupported())

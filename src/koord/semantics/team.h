@@ -38,6 +38,7 @@ struct PromiseCode {
   diag::Span span;
   uint32_t when;  ///< the entry of P; 0 if Q holds in any case
   uint32_t always;
+  bool at_end = false;  ///< Q holds when the round is over
 };
 /// Holds the code that sets a variable to its initial value.
 struct InitialCode {

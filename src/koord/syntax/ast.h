@@ -140,7 +140,7 @@ struct ParamDef {
 enum class AssumeKind : uint8_t {
   kFact,       // of parameters and functions, at any time
   kInitially,  // of the initial state, for each robot
-  kPort,       // `assume M.name when P always Q`
+  kPort,       // `assume M.name when P always Q`, or `... finally Q`
 };
 /// Represents an assumption of the specification (docs/theory.md, "Assumptions").
 struct AssumeDef {
@@ -150,6 +150,7 @@ struct AssumeDef {
   diag::Span span;
   ExprId when;  ///< P of a controller assumption; invalid: Q holds always
   ExprId body;
+  bool at_end = false;  ///< `finally Q`: Q holds when the round is over
 };
 /// Represents `summary f(x) -> y: F`: F(x, f(x)) holds for all x.
 struct SummaryDef {

@@ -168,10 +168,11 @@ class Formatter {
         break;
     }
     const std::string name = item.name.empty() ? item.module : fmt::format("{}.{}", item.module, item.name);
-    if (!item.when.valid()) return Statement(item.span, fmt::format("assume {} always", name), item.body);
+    const std::string_view word = item.at_end ? "finally" : "always";
+    if (!item.when.valid()) return Statement(item.span, fmt::format("assume {} {}", name, word), item.body);
     Line(Whole(item.span, item.when), fmt::format("assume {} when {}", name, Text(item.when)));
     ++depth_;
-    Line(program_.exprs[item.body].span, "always " + Text(item.body));
+    Line(program_.exprs[item.body].span, fmt::format("{} {}", word, Text(item.body)));
     --depth_;
   }
   void Print(const SummaryDef& item) {

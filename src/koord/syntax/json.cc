@@ -77,6 +77,7 @@ class Writer {
     j["assume"] = kNames[static_cast<size_t>(i.kind)];
     if (!i.module.empty()) j["module"] = i.module;
     if (i.when.valid()) j["when"] = Ex(i.when);
+    if (i.at_end) j["at_end"] = true;
     j["body"] = Ex(i.body);
     return j;
   }

@@ -89,19 +89,20 @@ void Parser::ParseParam(Span start) {
   EndSpecItem();
 }
 
-// assume initially[:] e  |  assume M[.name] [when e] always e  |  assume [name:] e
+// assume initially[:] e  |  assume M[.name] [when e] always|finally e  |  assume [name:] e
 void Parser::ParseAssume(Span start) {
   Take();
   AssumeDef def{AssumeKind::kFact, {}, {}, start, {}, {}};
+  const auto promises = [&](size_t k) {
+    return Peek(k).text == "when" || Peek(k).text == "always" || Peek(k).text == "finally" ||
+           Peek(k).kind == TokenKind::kNewline;
+  };
   if (At("initially")) {
     Take();
     Accept(":");
     def.kind = AssumeKind::kInitially;
     def.body = ParseSpecBody();
-  } else if (AtKind(TokenKind::kName) &&
-             (Peek(1).text == "when" || Peek(1).text == "always" || Peek(1).kind == TokenKind::kNewline ||
-              (Peek(1).text == "." && (Peek(3).text == "when" || Peek(3).text == "always" ||
-                                       Peek(3).kind == TokenKind::kNewline)))) {
+  } else if (AtKind(TokenKind::kName) && (promises(1) || (Peek(1).text == "." && promises(3)))) {
     def.kind = AssumeKind::kPort;
     def.span = Peek().span;
     def.module = ExpectName("the name of a module");
@@ -112,7 +113,9 @@ void Parser::ParseAssume(Span start) {
     AcceptContinuation("when");
     if (Accept("when")) def.when = ParseSpecBody();
     AcceptContinuation("always");
-    if (!Expect("always", "the condition of an assumption")) return EndSpecItem();
+    AcceptContinuation("finally");
+    def.at_end = Accept("finally");
+    if (!def.at_end && !Expect("always", "the condition of an assumption")) return EndSpecItem();
     def.body = ParseSpecBody();
   } else {
     if (AtKind(TokenKind::kName) && Peek(1).text == ":") {

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include "robot/dynamics/motion_problem.h"
-#include "robot/model/body.h"
 
 namespace rondo::robot {
 
@@ -34,13 +33,13 @@ MotionInstance InstanceOf(const Body& body, const MotionDef& motion, const std::
   return instance;
 }
 
-bool StandAlone(const RobotDef& type, Evaluator& e, World& world) {
+bool StandAlone(const RobotDef& type, Evaluator& e, World& world, const Arguments& given) {
   Arena& arena = e.arena();
   for (const RobotItem& item : type.items) {
     const auto* group = std::get_if<ParamGroup>(&item);
     if (group == nullptr) continue;
     for (const Param& p : group->params) {
-      if (!p.value.valid()) return false;
+      if (!p.value.valid() && !given.contains(p.name.text)) return false;
     }
   }
   world.scope.names.emplace("world", FrameAt(Identity(arena)));
@@ -50,7 +49,7 @@ bool StandAlone(const RobotDef& type, Evaluator& e, World& world) {
   body.name = type.name;
   body.self = Identity(arena);
   body.scope.outer = &world.scope;
-  FillBody(type, {}, world.clock, body, e);
+  FillBody(type, given, world.clock, body, e);
   return true;
 }
 

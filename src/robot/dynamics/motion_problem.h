@@ -7,7 +7,7 @@
 #include "base/result.h"
 #include "diag/diagnostic.h"
 #include "reach/problem/problem.h"
-#include "robot/model/world.h"
+#include "robot/model/body.h"
 
 /// States contracts of motions as problems of reachability.
 namespace rondo::robot {
@@ -69,7 +69,8 @@ MotionInstance InstanceOf(const Body& body, const MotionDef& motion, const std::
 
 /// Makes `world` a world with one robot of this type at its origin. Returns false if the type has parameters
 /// without a value.
-bool StandAlone(const RobotDef& type, Evaluator& evaluator, World& world);
+/// @param given  values for parameters.
+bool StandAlone(const RobotDef& type, Evaluator& evaluator, World& world, const Arguments& given = {});
 
 /// Returns the motions of a robot type that can be looked at without a choreography: those whose parameters
 /// all have a value or a range. `world` becomes a world with one such robot, which the instances are about.

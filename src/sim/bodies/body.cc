@@ -31,6 +31,16 @@ double Body::Value(std::string_view name) const {
 
 std::array<double, 4> Body::rotation() const { return {0, 0, std::sin(yaw() / 2), std::cos(yaw() / 2)}; }
 
+bool Body::AtRest() const {
+  constexpr double kSlow = 1e-3;  // m/s
+  return Distance(velocity(), Point{}) < kSlow;
+}
+
+bool Body::Advance(double dt, Integrator integrator) {
+  const Derivative f = [this](std::span<const double> x, std::span<double> dx) { Rate(x, dx); };
+  return Integrate(integrator, f, state_, dt);
+}
+
 void Body::Place(const Point& position, double yaw) {
   Prepare();
   tolerance_ = Value("tolerance");
@@ -59,8 +69,7 @@ bool Body::Step(double dt, Integrator integrator) {
   while (next_ + 1 < path_.size() && away(path_[next_]) < waypoint_tolerance_) ++next_;
   const bool last = next_ + 1 == path_.size();
   Control(path_[next_], last, dt);
-  const Derivative f = [this](std::span<const double> x, std::span<double> dx) { Rate(x, dx); };
-  if (!Integrate(integrator, f, state_, dt)) return false;
+  if (!Advance(dt, integrator)) return false;
   AfterStep();
   if (last && away(path_.back()) <= tolerance_) {
     dwelt_ += dt;

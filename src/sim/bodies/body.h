@@ -3,6 +3,8 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +26,14 @@ struct BodyParameter {
   std::string_view name;
   double value;
   std::string_view unit;
+};
+
+/// Describes a port of a body: what a program reads, or sets.
+struct BodyPort {
+  enum class Kind : uint8_t { kNumber, kPoint, kBool };
+  size_t number = 0;  ///< in the order of the body's ports
+  Kind kind = Kind::kNumber;
+  bool settable = false;  ///< an actuator; others can only be read
 };
 
 /// Models a robot's body with its controller, which goes through waypoints, one after the other. What a
@@ -54,6 +64,8 @@ class Body {
   virtual std::array<double, 4> rotation() const;
   /// Returns the velocity in m/s, world frame.
   virtual Point velocity() const = 0;
+  /// Reports whether nothing changes: it stays where it is, and so does all else that its sensors read.
+  virtual bool AtRest() const;
   /// Reports whether it moves in space; else heights of waypoints do not matter.
   virtual bool flies() const { return false; }
   double radius() const { return Value("radius"); }
@@ -62,6 +74,17 @@ class Body {
   /// Lists the parameters of the model. All models have `radius`, `tolerance`, `waypoint_tolerance` (metres)
   /// and `dwell` (seconds).
   virtual std::vector<BodyParameter> Parameters() const = 0;
+  /// Finds a port that the body has beside those of all bodies, such as the charge of its battery; nothing if
+  /// there is none.
+  virtual std::optional<BodyPort> FindPort(std::string_view) const { return std::nullopt; }
+  /// Reads or sets a port that was found; `values` has one number for each of its parts.
+  virtual void ReadPort(const BodyPort&, std::span<double>) const {}
+  virtual void WritePort(const BodyPort&, std::span<const double>) {}
+  /// Begins the random numbers of the body anew; counts from the next `Place` on.
+  virtual void Seed(uint64_t) {}
+  /// Returns what the body did that its model excludes, since it was asked last: `temperature leaves [60, 82]`.
+  virtual std::vector<std::string> TakeBroken() { return {}; }
+
   /// Gives a parameter a value; it counts from the next `Place` on.
   void Set(const std::string& name, double value) { values_[name] = value; }
   /// Returns the value of a parameter, its default unless it was set. A name that the model does not list
@@ -78,6 +101,8 @@ class Body {
   virtual void Control(const Point& target, bool last, double dt) = 0;
   /// Writes the derivative of the state `x` to `dx`, with the inputs held.
   virtual void Rate(std::span<const double> x, std::span<double> dx) const = 0;
+  /// Lets `dt` seconds pass, with the inputs held: integrates `Rate`. Returns false as `Step` does.
+  virtual bool Advance(double dt, Integrator integrator);
   /// Repairs the state after a step, such as the length of a quaternion.
   virtual void AfterStep() {}
   /// Tells the controller that the path is a new one.

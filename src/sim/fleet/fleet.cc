@@ -8,6 +8,7 @@
 #include "lang/suggest.h"
 #include "sim/fleet/round_words.h"
 #include "sim/fleet/tables.h"
+#include "sim/world/occupancy_map.h"
 
 namespace rondo::sim {
 namespace {
@@ -16,8 +17,12 @@ using diag::Kind;
 
 class Reader : Tables {
  public:
-  Reader(const diag::SourceSet& sources, diag::FileId file, diag::Diagnostics& diagnostics)
-      : Tables(sources, file, diagnostics), file_(file), diagnostics_(diagnostics) {}
+  Reader(const diag::SourceSet& sources, diag::FileId file, diag::Diagnostics& diagnostics,
+         const FleetSurroundings& surroundings)
+      : Tables(sources, file, diagnostics),
+        file_(file),
+        diagnostics_(diagnostics),
+        surroundings_(surroundings) {}
 
   Fleet Run() {
     const size_t before = diagnostics_.errors();
@@ -34,7 +39,8 @@ class Reader : Tables {
       fleet_.map_range = Number(*map, "range", fleet_.map_range, 0, 1e4);
     }
     if (const auto* planner = Table(root, "planner")) {
-      Known(*planner, {"clearance", "path_clearance"}, "`planner`");
+      Known(*planner, {"clearance", "path_clearance", "robots"}, "`planner`");
+      fleet_.around_robots = Flag(*planner, "robots", false);
       fleet_.clearance = Number(*planner, "clearance", fleet_.clearance, 0, 100);
       fleet_.path_clearance = Number(*planner, "path_clearance", fleet_.path_clearance, 0, 1e4);
     }
@@ -71,12 +77,20 @@ class Reader : Tables {
   }
 
   void ReadWorld(const toml::table& t) {
-    Known(t, {"low", "high", "box", "cylinder"}, "`world`");
+    Known(t, {"low", "high", "box", "cylinder", "map"}, "`world`");
+    if (const toml::node* map = t.get("map")) ReadMap(*map);
     fleet_.world.low = ReadPoint(t, "low", fleet_.world.low, false, {});
     fleet_.world.high = ReadPoint(t, "high", fleet_.world.high, false, {});
     for (size_t i = 0; i < 3; ++i) {
       if (fleet_.world.low[i] > fleet_.world.high[i] && t.get("high") != nullptr)
         Wrong(At(*t.get("high")), "`high` must not be below `low`");
+    }
+    for (const Rectangle& r : walls_) {
+      const double floor = fleet_.world.low[2];
+      const double ceiling = fleet_.world.high[2];
+      fleet_.world.boxes.push_back(
+          {{(r.low[0] + r.high[0]) / 2, (r.low[1] + r.high[1]) / 2, (floor + ceiling) / 2},
+           {r.high[0] - r.low[0], r.high[1] - r.low[1], ceiling - floor}});
     }
     ForEach(t, "box", [&](const toml::table& box) {
       Known(box, {"centre", "size"}, "a box");
@@ -94,8 +108,21 @@ class Reader : Tables {
     });
   }
 
+  // Its occupied and unknown cells are obstacles from the floor to the ceiling.
+  void ReadMap(const toml::node& node) {
+    const auto path = node.value<std::string>();
+    if (!path) return Wrong(At(node), "`map` must be the path of a file, as in \"map.yaml\"");
+    const auto map = ReadOccupancyMap(*path, surroundings_.read);
+    if (!map.ok()) return Wrong(At(node), map.error().message);
+    World& world = fleet_.world;
+    world.low = {map.value().low[0], map.value().low[1], world.low[2]};
+    world.high = {map.value().high[0], map.value().high[1], world.high[2]};
+    walls_ = map.value().walls;
+  }
+
   void ReadLidar(const toml::table& t) {
-    Known(t, {"range", "beams", "rate", "noise", "resolution"}, "`lidar`");
+    Known(t, {"range", "beams", "rate", "noise", "resolution", "robots"}, "`lidar`");
+    fleet_.lidar.robots = Flag(t, "robots", false);
     fleet_.lidar.range = Number(t, "range", fleet_.lidar.range, 0.01, 1e4);
     fleet_.lidar.beams = static_cast<int>(Number(t, "beams", fleet_.lidar.beams, 1, 100'000));
     fleet_.lidar.rate = Number(t, "rate", fleet_.lidar.rate, 0.01, 1000);
@@ -131,47 +158,93 @@ class Reader : Tables {
                         2 * fleet_.delta));
   }
 
+  // What kind of body it has, where it is put, and its parameters.
+  bool ReadModel(const toml::table& t, FleetRobot& robot) {
+    const toml::node* model = t.get("model");
+    robot.model = model == nullptr ? "" : model->value<std::string>().value_or("");
+    const toml::node* from = t.get("from");
+    if (from != nullptr) robot.from = from->value<std::string>().value_or("");
+    if (from != nullptr && robot.from.empty()) {
+      Wrong(At(*from), "`from` must be the path of a file with robot types, as in \"robots.rondo\"");
+      return false;
+    }
+    robot.position = ReadPoint(t, "position", {}, from == nullptr, robot.span);
+    robot.yaw = Number(t, "yaw", 0, -1000, 1000);
+    if (from != nullptr) {
+      if (model == nullptr || robot.model.empty()) {
+        Wrong(robot.span, "the robot has no `model`: the name of a robot type in the file");
+        return false;
+      }
+      robot.span = At(*model);
+      Numbers(t, "parameters", robot.parameters);
+      Numbers(t, "initial", robot.initial);
+      if (!surroundings_.model) {
+        Wrong(At(*from), "robot types of files cannot be used here");
+        return false;
+      }
+      robot.make = surroundings_.model(robot);
+      return static_cast<bool>(robot.make);
+    }
+    if (const toml::node* initial = t.get("initial"))
+      Wrong(At(*initial), "built-in models have no states that can be given: `initial` goes with `from`");
+    return ReadBuiltIn(t, model, robot);
+  }
+
+  bool ReadBuiltIn(const toml::table& t, const toml::node* model, FleetRobot& robot) {
+    const std::vector<std::string> models = BodyModels();
+    if (MakeBody(robot.model) == nullptr) {
+      auto& report =
+          diagnostics_.Report(Kind::kFleetValue, model == nullptr ? robot.span : At(*model),
+                              model == nullptr ? std::string("the robot has no `model`")
+                                               : fmt::format("there is no model `{}`", robot.model));
+      const std::string near = lang::Suggest(robot.model, models);
+      report.Help(near.empty() ? fmt::format("there are {}; others need `from = \"FILE.rondo\"`",
+                                             fmt::join(models, ", "))
+                               : fmt::format("did you mean `{}`?", near));
+      return false;
+    }
+    robot.make = [name = robot.model] { return MakeBody(name); };
+    if (const auto* parameters = Table(t, "parameters")) {
+      const auto known = MakeBody(robot.model)->Parameters();
+      for (const auto& [key, node] : *parameters) {
+        const std::string name(key.str());
+        const bool exists =
+            std::any_of(known.begin(), known.end(), [&](const auto& p) { return p.name == name; });
+        if (!exists) {
+          std::vector<std::string> all;
+          for (const BodyParameter& p : known) all.emplace_back(p.name);
+          diagnostics_
+              .Report(Kind::kFleetValue, At(key.source()),
+                      fmt::format("model `{}` has no parameter `{}`", robot.model, name))
+              .Help(fmt::format("it has {}", fmt::join(all, ", ")));
+          continue;
+        }
+        const bool zero = name == "gains" || name == "dwell";
+        robot.parameters[name] = Number(*parameters, name.c_str(), 0, zero ? 0 : 1e-6, 1e6);
+      }
+    }
+    return true;
+  }
+
+  void Numbers(const toml::table& t, const char* table, std::map<std::string, double>& values) {
+    const auto* numbers = Table(t, table);
+    if (numbers == nullptr) return;
+    for (const auto& [key, node] : *numbers) {
+      const std::string name(key.str());
+      values[name] = Number(*numbers, name.c_str(), 0, -1e9, 1e9);
+    }
+  }
+
   void Robots(const toml::table& root) {
     std::set<std::string> names;
     ForEach(root, "robot", [&](const toml::table& t) {
-      Known(t, {"name", "model", "position", "yaw", "parameters", "count", "columns", "step", "row_step"},
+      Known(t,
+            {"name", "model", "from", "position", "yaw", "parameters", "initial", "count", "columns", "step",
+             "row_step"},
             "a robot");
       FleetRobot robot;
       robot.span = At(t);
-      const toml::node* model = t.get("model");
-      robot.model = model == nullptr ? "" : model->value<std::string>().value_or("");
-      const std::vector<std::string> models = BodyModels();
-      if (MakeBody(robot.model) == nullptr) {
-        auto& report =
-            diagnostics_.Report(Kind::kFleetValue, model == nullptr ? robot.span : At(*model),
-                                model == nullptr ? std::string("the robot has no `model`")
-                                                 : fmt::format("there is no model `{}`", robot.model));
-        const std::string near = lang::Suggest(robot.model, models);
-        report.Help(near.empty() ? fmt::format("there are {}", fmt::join(models, ", "))
-                                 : fmt::format("did you mean `{}`?", near));
-        return;
-      }
-      robot.position = ReadPoint(t, "position", {}, true, robot.span);
-      robot.yaw = Number(t, "yaw", 0, -1000, 1000);
-      if (const auto* parameters = Table(t, "parameters")) {
-        const auto known = MakeBody(robot.model)->Parameters();
-        for (const auto& [key, node] : *parameters) {
-          const std::string name(key.str());
-          const bool exists =
-              std::any_of(known.begin(), known.end(), [&](const auto& p) { return p.name == name; });
-          if (!exists) {
-            std::vector<std::string> all;
-            for (const BodyParameter& p : known) all.emplace_back(p.name);
-            diagnostics_
-                .Report(Kind::kFleetValue, At(key.source()),
-                        fmt::format("model `{}` has no parameter `{}`", robot.model, name))
-                .Help(fmt::format("it has {}", fmt::join(all, ", ")));
-            continue;
-          }
-          const bool zero = name == "gains" || name == "dwell";
-          robot.parameters[name] = Number(*parameters, name.c_str(), 0, zero ? 0 : 1e-6, 1e6);
-        }
-      }
+      if (!ReadModel(t, robot)) return;
       const toml::node* name = t.get("name");
       robot.name = name != nullptr       ? name->value<std::string>().value_or("")
                    : t.contains("count") ? std::string("robot")
@@ -204,13 +277,16 @@ class Reader : Tables {
 
   diag::FileId file_;
   diag::Diagnostics& diagnostics_;
+  const FleetSurroundings& surroundings_;
+  std::vector<Rectangle> walls_;
   Fleet fleet_;
 };
 
 }  // namespace
 
-Fleet ReadFleet(const diag::SourceSet& sources, diag::FileId file, diag::Diagnostics& diagnostics) {
-  return Reader(sources, file, diagnostics).Run();
+Fleet ReadFleet(const diag::SourceSet& sources, diag::FileId file, diag::Diagnostics& diagnostics,
+                const FleetSurroundings& surroundings) {
+  return Reader(sources, file, diagnostics, surroundings).Run();
 }
 
 }  // namespace rondo::sim

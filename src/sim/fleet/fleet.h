@@ -1,11 +1,14 @@
 #pragma once
 
+#include <functional>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/result.h"
 #include "diag/diagnostic.h"
 #include "runtime/rounds/settings.h"
 #include "sim/bodies/body.h"
@@ -21,14 +24,31 @@ enum class Policy : uint8_t {
   kRoundRobin,  ///< events and robots take turns
 };
 
+/// Makes a body, at no place yet.
+using BodyFactory = std::function<std::unique_ptr<Body>()>;
+
 /// Describes one robot of the fleet.
 struct FleetRobot {
   std::string name;
-  std::string model;
+  std::string model;  ///< a built-in one; or a robot type of the file `from`
+  std::string from;   ///< as the fleet file says it; empty: a built-in model
   Point position{};
   double yaw = 0;
   std::map<std::string, double> parameters;
+  std::map<std::string, double>
+      initial;  ///< of models in files: states, memory and inputs at the start, SI units
   diag::Span span;
+  BodyFactory make;
+};
+
+/// Provides what fleet files refer to.
+struct FleetSurroundings {
+  /// Returns the bytes of a file whose path is relative to the fleet file.
+  ///
+  /// @error says why it cannot be read.
+  std::function<base::Result<std::string>(const std::string& path)> read;
+  /// Returns what makes bodies of the robot type `model` of the file `from`; nothing, after a report.
+  std::function<BodyFactory(const FleetRobot& robot)> model;
 };
 
 /// Describes the scanner that every robot carries.
@@ -38,6 +58,7 @@ struct Lidar {
   double rate = 10;       ///< scans per second
   double noise = 0;       ///< the standard deviation of its distances, metres
   double resolution = 0;  ///< its distances are multiples of this, metres; 0: they are not rounded
+  bool robots = false;    ///< it sees robots, too
 };
 
 /// Holds a value that the fleet file gives to a parameter or variable of the program.
@@ -79,10 +100,11 @@ struct Fleet {
   Until until = Until::kTime;
   World world;
   Lidar lidar;
-  double clearance = 0.3;     ///< planned paths keep so far from obstacles, beside the robot's radius
-  double path_clearance = 1;  ///< `pathIsClear`
-  double cell = 1;            ///< the side of the cells of maps
-  double map_range = 0;       ///< how far scans are drawn into maps; 0: the scanner's range
+  double clearance = 0.3;      ///< planned paths keep so far from obstacles, beside the robot's radius
+  bool around_robots = false;  ///< planned paths lead around where the others are
+  double path_clearance = 1;   ///< `pathIsClear`
+  double cell = 1;             ///< the side of the cells of maps
+  double map_range = 0;        ///< how far scans are drawn into maps; 0: the scanner's range
   FleetRounds rounds;
   std::vector<FleetRobot> robots;
   std::map<std::string, FleetValue> params;
@@ -90,6 +112,8 @@ struct Fleet {
 };
 
 /// Reads a fleet file (TOML). Reports every mistake where it stands; the fleet is of use only without errors.
-Fleet ReadFleet(const diag::SourceSet& sources, diag::FileId file, diag::Diagnostics& diagnostics);
+/// @param surroundings  without its functions, references to other files are errors.
+Fleet ReadFleet(const diag::SourceSet& sources, diag::FileId file, diag::Diagnostics& diagnostics,
+                const FleetSurroundings& surroundings = {});
 
 }  // namespace rondo::sim

@@ -13,6 +13,11 @@ namespace {
 /// What nothing is near to: metres.
 constexpr double kFar = 1e9;
 
+World With(World world, const World& others) {
+  world.cylinders.insert(world.cylinders.end(), others.cylinders.begin(), others.cylinders.end());
+  return world;
+}
+
 }  // namespace
 
 void Functions::PathIsClear(size_t, Arguments a, std::span<Word> result) {
@@ -43,7 +48,7 @@ void Functions::PlanTo(size_t robot, const Point& target, const World& world, st
   request.flies = body.flies();
   request.seed = seed_ * 1'000'003 + plans_++;
   // No way: an empty path, which programs test for.
-  const auto path = Plan(world, request);
+  const auto path = Plan(fleet_.around_robots ? With(world, Others(*bodies_, robot)) : world, request);
   result[0] = path ? EncodePath(heap(), *path) : 0;
 }
 

@@ -100,6 +100,15 @@ double World::DistanceTo(const Point& p) const {
   return best;
 }
 
+World Others(const std::vector<std::unique_ptr<Body>>& bodies, size_t self) {
+  World world;
+  for (size_t r = 0; r < bodies.size(); ++r) {
+    if (r != self)
+      world.cylinders.push_back({bodies[r]->position(), bodies[r]->radius(), 2 * bodies[r]->radius()});
+  }
+  return world;
+}
+
 double PathDistance(const std::vector<Point>& p, const std::vector<Point>& q) {
   double best = kInfinity;
   if (p.empty() || q.empty()) return best;

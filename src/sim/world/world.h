@@ -40,6 +40,10 @@ struct World {
   double DistanceTo(const Point& p) const;
 };
 
+/// Returns the robots but number `self`, which is about to scan or to plan, as obstacles: cylinders around
+/// spheres.
+World Others(const std::vector<std::unique_ptr<Body>>& bodies, size_t self);
+
 /// Finds touching pairs and least distances (FCL). Robots are spheres around their positions.
 class Contacts {
  public:

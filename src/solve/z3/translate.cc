@@ -179,6 +179,9 @@ const Translator::SortInfo& Translator::Sort(expr::SortId id) {
     case Op::kListAppend:
     case Op::kListRemove:
     case Op::kListSet:
+    case Op::kListInsert:
+    case Op::kListDrop:
+    case Op::kListSlice:
       return ListFunction(t)(args);
   }
   CHECK(false);

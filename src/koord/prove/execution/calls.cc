@@ -170,8 +170,19 @@ TermId Executor::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) 
       Check(CheckKind::kIndex, e.span, InRange(first, arena_.Length(list)));
       return arena_.At(list, first);
     }
+    case Builtin::kSlice: {
+      const TermId list = Eval(e.args[1]);
+      const TermId from = Eval(e.args[2]);
+      const TermId to = Eval(e.args[3]);
+      Check(CheckKind::kIndex, e.span,
+            arena_.And({arena_.Le(arena_.IntNumber(0), from), arena_.Le(from, to),
+                        arena_.Le(to, arena_.Length(list))}));
+      return arena_.Slice(list, from, to);
+    }
     case Builtin::kRect:
     case Builtin::kGrid:
+    case Builtin::kInsert:
+    case Builtin::kPop:
     case Builtin::kRemove:
     case Builtin::kClear:
     case Builtin::kAppend:

@@ -196,6 +196,7 @@ void Executor::Method(const Stmt& stmt) {
   const TermId list = Eval(target);
   if (builtin == Builtin::kClear)
     return Assign(target, arena_.MakeList(arena_.sort(arena_.sort_of(list)).parts[0], {}));
+  if (builtin == Builtin::kPop || builtin == Builtin::kInsert) return ChangeAt(stmt, target, list, builtin);
   const TermId element = As(Eval(call.args[1]), arena_.sort(arena_.sort_of(list)).parts[0]);
   if (builtin == Builtin::kAppend) return Assign(target, arena_.Append(list, element));
   const TermId k = arena_.FreshBound("k", arena_.Int());
@@ -203,6 +204,21 @@ void Executor::Method(const Stmt& stmt) {
         arena_.Exists({k}, arena_.And({arena_.Le(arena_.IntNumber(0), k), arena_.Lt(k, arena_.Length(list)),
                                        arena_.Eq(arena_.At(list, k), element)})));
   Assign(target, arena_.Remove(list, element));
+}
+
+// `l.insert(i, x)` and `l.pop(i)`.
+void Executor::ChangeAt(const Stmt& stmt, ExprId target, TermId list, Builtin builtin) {
+  const lang::Expr& call = exprs_[stmt.value];
+  const TermId index = call.args.size() > 1 ? Eval(call.args[1]) : arena_.IntNumber(0);
+  const TermId length = arena_.Length(list);
+  if (builtin == Builtin::kPop) {
+    Check(CheckKind::kIndex, stmt.span, InRange(index, length));
+    return Assign(target, arena_.Drop(list, index));
+  }
+  const TermId element = As(Eval(call.args[2]), arena_.sort(arena_.sort_of(list)).parts[0]);
+  Check(CheckKind::kIndex, stmt.span,
+        arena_.And(arena_.Le(arena_.IntNumber(0), index), arena_.Le(index, length)));
+  Assign(target, arena_.Insert(list, index, element));
 }
 
 // Writes `value` at `target`: a member or item of a variable is a change of the whole.

@@ -182,6 +182,7 @@ class Executor {
   void AssignCell(ExprId target, TermId value);
   std::optional<size_t> SharedArrayOf(ExprId target, std::vector<ExprId>& indices) const;
   void Method(const Stmt& stmt);
+  void ChangeAt(const Stmt& stmt, ExprId target, TermId list, Builtin builtin);
   State Merge(TermId condition, const State& then, const State& otherwise);
   TermId Live() const;
   /// Returns the declared length of an array; of a list, a bound that an invariant or assumption states.

@@ -269,8 +269,8 @@ Problem Problems::StepFor(Round& round, TermId refuted, const std::vector<TermId
   if (action) assertions.push_back({First(round, *action), ""});
   if (options_.expand) assertions.push_back({Succeeds(round), ""});
   for (const TermId r : participants) {
-    std::vector<Assertion>& promises = promises_[{&round, r}];
-    if (promises.empty()) promises = theory_.PortPromises(round, r);
+    std::vector<Assertion>& promises = promises_[{&round, r, at_rounds}];
+    if (promises.empty()) promises = theory_.PortPromises(round, r, at_rounds);
     for (const Assertion& p : promises)
       assertions.push_back({arena_.Implies(vocabulary_.IsRobot(r), p.formula), p.group});
   }

@@ -135,7 +135,8 @@ class Problems {
   TermId robot_;
   // By the array `stopped` of the view, and whether it is between rounds.
   std::map<std::pair<TermId, bool>, std::vector<solve::Assertion>> everything_;
-  std::map<std::pair<const Round*, TermId>, std::vector<solve::Assertion>> promises_;  // by robot
+  // By robot, and whether the round is over.
+  std::map<std::tuple<const Round*, TermId, bool>, std::vector<solve::Assertion>> promises_;
   std::vector<solve::Assertion> background_;
   std::optional<Extremes> extremes_;
   solve::Witnesses witnesses_;

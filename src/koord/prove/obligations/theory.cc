@@ -203,11 +203,15 @@ std::vector<Theory::Promise> Theory::Promises(const View& settled, const View& e
   return result;
 }
 
-std::vector<Assertion> Theory::PortPromises(Round& round, TermId robot) {
+std::vector<Assertion> Theory::PortPromises(Round& round, TermId robot, bool over) {
   std::vector<Assertion> result;
-  for (const Round::Leg& leg : round.Legs(robot)) {
-    for (const Promise& p : Promises(leg.from, leg.to, robot))
-      result.push_back({arena_.Or({leg.still, arena_.Not(p.condition), p.promise}), p.name});
+  const std::vector<Round::Leg> legs = round.Legs(robot);
+  for (size_t i = 0; i < legs.size(); ++i) {
+    // What holds at the end is promised to actuators that stayed as they were for the whole round: the first leg.
+    for (const Promise& p : Promises(legs[i].from, legs[i].to, robot)) {
+      if (p.def->at_end && (!over || i > 0)) continue;
+      result.push_back({arena_.Or({legs[i].still, arena_.Not(p.condition), p.promise}), p.name});
+    }
   }
   return result;
 }

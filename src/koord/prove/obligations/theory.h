@@ -38,7 +38,7 @@ class Theory {
   std::vector<solve::Assertion> PortFacts(const View& view);
   /// Returns the controller assumptions about the environment transition of one robot, for each leg of the round: P at
   /// its start implies Q at its end (rule RobotEnv).
-  std::vector<solve::Assertion> PortPromises(Round& round, TermId robot);
+  std::vector<solve::Assertion> PortPromises(Round& round, TermId robot, bool over);
 
   /// Holds a controller assumption (the paper's (P, Q)) of one robot.
   struct Promise {

@@ -209,7 +209,14 @@ void Compiler::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) {
       Emit(Op::kListAt, Width(types[model_.TypeOf(list)].parts[0]));
       return;
     }
+    case Builtin::kSlice:
+      for (size_t i = 1; i <= 3; ++i) Gen(e.args[i]);
+      span_ = e.span;
+      Emit(Op::kListSlice, Width(types[model_.TypeOf(e.args[1])].parts[0]));
+      return;
     case Builtin::kRemove:
+    case Builtin::kInsert:
+    case Builtin::kPop:
     case Builtin::kClear:
     case Builtin::kAppend:
       break;  // not values

@@ -225,9 +225,26 @@ void Compiler::Method(const Stmt& stmt) {
     return Assign(target);
   }
   Gen(target);
-  GenAs(call.args[1], element);
+  switch (builtin) {
+    case Builtin::kInsert:
+      Gen(call.args[1]);
+      GenAs(call.args[2], element);
+      break;
+    case Builtin::kPop:
+      if (call.args.size() > 1)
+        Gen(call.args[1]);
+      else
+        Constant(0);
+      break;
+    default:
+      GenAs(call.args[1], element);
+  }
   span_ = stmt.span;
-  Emit(builtin == Builtin::kAppend ? Op::kListAppend : Op::kListRemove, Width(element));
+  Emit(builtin == Builtin::kAppend   ? Op::kListAppend
+       : builtin == Builtin::kInsert ? Op::kListInsert
+       : builtin == Builtin::kPop    ? Op::kListDrop
+                                     : Op::kListRemove,
+       Width(element));
   Assign(target);
 }
 

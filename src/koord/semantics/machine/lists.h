@@ -96,6 +96,52 @@ RONDO_INSTRUCTION RunListRemove(Registers& r, const Instruction& i) {
   return Fault::kNone;
 }
 
+// Below: the list, the index, the item.
+RONDO_INSTRUCTION RunListInsert(Registers& r, const Instruction& i) {
+  r.top -= 1 + i.a;
+  const auto items = r.m.heap[r.top[-1]];
+  const int64_t k = ToInt(r.top[0]);
+  if (k < 0 || static_cast<uint64_t>(k) > items.size() / i.a) {
+    RONDO_TOTAL(Index);
+    return Fault::kNone;
+  }
+  if (items.size() / i.a >= kLongestList) return Fault::kTooLong;
+  r.m.buffer.assign(items.begin(), items.end());
+  r.m.buffer.insert(r.m.buffer.begin() + k * i.a, r.top + 1, r.top + 1 + i.a);
+  r.top[-1] = r.m.heap.Intern(r.m.buffer);
+  return Fault::kNone;
+}
+
+// Below: the list, the index.
+RONDO_INSTRUCTION RunListDrop(Registers& r, const Instruction& i) {
+  --r.top;
+  const auto items = r.m.heap[r.top[-1]];
+  const int64_t k = ToInt(r.top[0]);
+  if (k < 0 || static_cast<uint64_t>(k) >= items.size() / i.a) {
+    RONDO_TOTAL(Index);
+    return Fault::kNone;
+  }
+  r.m.buffer.assign(items.begin(), items.end());
+  r.m.buffer.erase(r.m.buffer.begin() + k * i.a, r.m.buffer.begin() + (k + 1) * i.a);
+  r.top[-1] = r.m.heap.Intern(r.m.buffer);
+  return Fault::kNone;
+}
+
+// Below: the list, the first index, the one behind the last.
+RONDO_INSTRUCTION RunListSlice(Registers& r, const Instruction& i) {
+  r.top -= 2;
+  const auto items = r.m.heap[r.top[-1]];
+  const int64_t from = ToInt(r.top[0]);
+  const int64_t to = ToInt(r.top[1]);
+  if (from < 0 || to < from || static_cast<uint64_t>(to) > items.size() / i.a) {
+    RONDO_TOTAL(Index);
+    return Fault::kNone;
+  }
+  r.m.buffer.assign(items.begin() + from * i.a, items.begin() + to * i.a);
+  r.top[-1] = r.m.heap.Intern(r.m.buffer);
+  return Fault::kNone;
+}
+
 RONDO_INSTRUCTION RunConcatenate(Registers& r, const Instruction&) {
   --r.top;
   const std::string text = r.m.heap.Text(r.top[-1]) + r.m.heap.Text(r.top[0]);

@@ -5,7 +5,7 @@
 #include <random>
 
 /// Draws random numbers that are the same on every machine.
-namespace rondo::sim {
+namespace rondo::base {
 
 /// Returns a number in [0, 1): the same everywhere for the same state of the engine, which the standard's
 /// distributions do not promise.
@@ -18,4 +18,4 @@ inline double Normal(std::mt19937_64& random) {
   return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * Uniform(random));
 }
 
-}  // namespace rondo::sim
+}  // namespace rondo::base

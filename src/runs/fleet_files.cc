@@ -1,0 +1,202 @@
+#include "runs/fleet_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/archive/iterators/base64_from_binary.hpp>
+#include <boost/archive/iterators/binary_from_base64.hpp>
+#include <boost/archive/iterators/transform_width.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "lang/suggest.h"
+#include "robot/dynamics/motion_problem.h"
+#include "robot/model/body.h"
+#include "sim/models/modelled_body.h"
+
+namespace rondo::runs {
+
+namespace fs = std::filesystem;
+using diag::Kind;
+
+FleetFiles::FleetFiles(const std::string& fleet, workspace::Session& session)
+    : session_(session), folder_(fs::path(fleet).parent_path().string()), from_disk_(true) {}
+
+FleetFiles::FleetFiles(FileContents kept, workspace::Session& session)
+    : session_(session), from_disk_(false), contents_(std::move(kept)) {}
+
+sim::Fleet FleetFiles::Read(diag::FileId file) {
+  sim::FleetSurroundings surroundings;
+  surroundings.read = [this](const std::string& path) { return Bytes(path); };
+  surroundings.model = [this](const sim::FleetRobot& robot) { return Model(robot); };
+  return sim::ReadFleet(session_.sources, file, session_.diagnostics, surroundings);
+}
+
+base::Result<std::string> FleetFiles::Bytes(const std::string& path) {
+  const std::string key = fs::path(path).lexically_normal().string();
+  if (const auto it = contents_.find(key); it != contents_.end()) return it->second;
+  if (!from_disk_) return base::Error{"the trace does not keep it"};
+  auto bytes = base::ReadFile((fs::path(folder_) / path).lexically_normal().string());
+  if (bytes.ok()) contents_[key] = bytes.value();
+  return bytes;
+}
+
+// The robot types of a file; nullptr after a report.
+workspace::LoadedModule* FleetFiles::Module(const std::string& from, diag::Span span) {
+  const std::string path = (fs::path(folder_) / from).lexically_normal().string();
+  if (const auto it = modules_.find(path); it != modules_.end()) return it->second.get();
+  std::unique_ptr<workspace::LoadedModule>& module = modules_[path];
+  if (!workspace::IsModuleFile(path)) {
+    session_.diagnostics.Report(
+        Kind::kFleetValue, span,
+        fmt::format("`{}` is no file with robot types: their names end with `.rondo`", from));
+    return nullptr;
+  }
+  if (const auto bytes = Bytes(from); !bytes.ok()) {
+    session_.diagnostics
+        .Report(Kind::kFleetValue, span, fmt::format("cannot read `{}`: {}", path, bytes.error().message))
+        .Help("paths are relative to the fleet file");
+    return nullptr;
+  }
+  const size_t before = session_.diagnostics.errors();
+  const auto disk = std::exchange(session_.read, [this](const std::string& file) {
+    return Bytes(folder_.empty() ? file : fs::path(file).lexically_relative(folder_).string());
+  });
+  auto loaded = workspace::LoadModule({path}, {}, session_);
+  session_.read = disk;
+  if (loaded->declarations == nullptr || session_.diagnostics.errors() != before) return nullptr;
+  module = std::move(loaded);
+  return module.get();
+}
+
+sim::BodyFactory FleetFiles::Model(const sim::FleetRobot& robot) {
+  std::string key = robot.from + "\n" + robot.model;
+  for (const auto* values : {&robot.parameters, &robot.initial}) {
+    for (const auto& [name, value] : *values) key += fmt::format("\n{} = {}", name, value);
+    key += "\n";
+  }
+  if (const auto it = made_.find(key); it != made_.end()) return it->second;
+  workspace::LoadedModule* module = Module(robot.from, robot.span);
+  if (module == nullptr) return {};
+  const auto wrong = [&](std::string message) -> diag::Diagnostic& {
+    return session_.diagnostics.Report(Kind::kFleetValue, robot.span, std::move(message));
+  };
+  const robot::RobotDef* type = nullptr;
+  std::vector<std::string> names;
+  for (const choreo::Item& item : module->module.items) {
+    const auto* def = std::get_if<robot::RobotDef>(&item);
+    if (def == nullptr) continue;
+    names.push_back(def->name.text);
+    if (def->name.text == robot.model) type = def;
+  }
+  if (type == nullptr) {
+    auto& report = wrong(fmt::format("there is no robot type `{}` in `{}`", robot.model, robot.from));
+    const std::string near = lang::Suggest(robot.model, names);
+    report.Help(near.empty() ? fmt::format("it has {}", fmt::join(names, ", "))
+                             : fmt::format("did you mean `{}`?", near));
+    return {};
+  }
+  // What all bodies have is not the model's.
+  const sim::ModelledBody any(std::make_shared<sim::RobotCode>(), {});
+  const auto common = any.Parameters();
+  std::map<std::string, double> of_all;
+  robot::Arguments given;
+  expr::Arena& arena = module->arena;
+  for (const auto& [name, value] : robot.parameters) {
+    if (robot::HasParameter(*type, name)) {
+      robot::Value number =
+          robot::Quantity(arena.Number(arena.Real(), expr::Rational::FromDouble(value)), {});
+      number.any_dimension = true;
+      given.emplace(name, std::pair(std::move(number), robot.span));
+    } else if (std::ranges::any_of(common, [&](const auto& p) { return p.name == name; })) {
+      of_all.emplace(name, value);
+    } else {
+      wrong(fmt::format("`{}` has no parameter `{}`", robot.model, name));
+      return {};
+    }
+  }
+  robot::World world;
+  const size_t before = session_.diagnostics.errors();
+  if (!robot::StandAlone(*type, module->declarations->evaluator(), world, given)) {
+    wrong(fmt::format("`{}` has parameters without a value", robot.model)).Help("give them in `parameters`");
+    return {};
+  }
+  if (session_.diagnostics.errors() != before) return {};
+  auto code = sim::CodeOf(world, world.bodies[0], arena);
+  if (!code.ok()) {
+    wrong(fmt::format("`{}` cannot be a body: {}", robot.model, code.error().message));
+    return {};
+  }
+  const auto shared = std::make_shared<const sim::RobotCode>(std::move(code).value());
+  for (const auto& [name, value] : robot.initial) {
+    if (shared->Find(name) < shared->variables.size()) continue;
+    std::vector<std::string> all;
+    for (const sim::RobotVariable& v : shared->variables) all.push_back(v.name);
+    wrong(fmt::format("`{}` has no state `{}`", robot.model, name))
+        .Help(fmt::format("it has {}", fmt::join(all, ", ")));
+    return {};
+  }
+  const sim::BodyFactory factory = [shared, initial = robot.initial, of_all]() -> std::unique_ptr<sim::Body> {
+    auto body = std::make_unique<sim::ModelledBody>(shared, initial);
+    for (const auto& [name, value] : of_all) body->Set(name, value);
+    return body;
+  };
+  return made_[key] = factory;
+}
+
+namespace {
+
+namespace it = boost::archive::iterators;
+
+std::string ToBase64(const std::string& bytes) {
+  using Encoded = it::base64_from_binary<it::transform_width<std::string::const_iterator, 6, 8>>;
+  std::string text(Encoded(bytes.begin()), Encoded(bytes.end()));
+  return text.append((3 - bytes.size() % 3) % 3, '=');
+}
+
+std::optional<std::string> FromBase64(std::string text) {
+  using Decoded = it::transform_width<it::binary_from_base64<std::string::const_iterator>, 8, 6>;
+  while (!text.empty() && text.back() == '=') text.pop_back();
+  const size_t size = text.size() * 6 / 8;
+  text.append((4 - text.size() % 4) % 4, 'A');  // the iterators read whole groups
+  try {
+    std::string bytes(Decoded(text.cbegin()), Decoded(text.cend()));
+    bytes.resize(size);
+    return bytes;
+  } catch (const it::dataflow_exception&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+nlohmann::json ToJson(const FileContents& files) {
+  nlohmann::json json = nlohmann::json::object();
+  for (const auto& [path, bytes] : files) {
+    const bool text = fs::path(path).extension() == ".rondo" || fs::path(path).extension() == ".yaml";
+    json[path] = text ? nlohmann::json{{"text", bytes}} : nlohmann::json{{"base64", ToBase64(bytes)}};
+  }
+  return json;
+}
+
+std::optional<FileContents> FilesFromJson(const nlohmann::json& json) {
+  FileContents files;
+  if (!json.is_object()) return std::nullopt;
+  for (const auto& [path, value] : json.items()) {
+    const auto text = value.is_object() ? value.find("text") : value.end();
+    const auto coded = value.is_object() ? value.find("base64") : value.end();
+    if (value.is_object() && text != value.end() && text->is_string()) {
+      files[path] = text->get<std::string>();
+    } else if (value.is_object() && coded != value.end() && coded->is_string()) {
+      auto bytes = FromBase64(coded->get<std::string>());
+      if (!bytes) return std::nullopt;
+      files[path] = std::move(*bytes);
+    } else {
+      return std::nullopt;
+    }
+  }
+  return files;
+}
+
+}  // namespace rondo::runs
