@@ -201,8 +201,7 @@ bool ExprParser::ParseBinder(Binder& binder, std::vector<ExprId>& ranges) {
   }
   if (!Expect("in", "the variables of a quantifier")) return false;
   if (HasFolds() && At("range") && Peek(1).text == "(") {
-    binder.type.name = "int";
-    binder.type.span = Peek().span;
+    binder.domain = pool_.Add({ExprKind::kName, Peek().span, "int", {}, {}});
     ranges.push_back(ParseRange(binder.names));
     return !failed_;
   }

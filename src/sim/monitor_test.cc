@@ -182,12 +182,20 @@ TEST(SummaryMonitoring, ABrokenSummaryIsReportedOnce) {
   EXPECT_EQ(monitor.violations()[0].count, 1U);
 }
 
+std::vector<FleetRobot> OneRobot() {
+  FleetRobot robot;
+  robot.name = "car0";
+  robot.model = "car";
+  robot.make = [] { return MakeBody("car"); };
+  return {robot};
+}
+
 std::vector<PortRole> Roles(const std::string& sensors, const std::string& actuators, size_t mistakes = 0) {
   Program program("using M:\n    sensors:\n" + sensors + "    actuators:\n" + actuators +
                   "local:\n    int n\nGo:\n    eff:\n        n = 1\n");
   std::vector<PortRole> roles;
   diag::Diagnostics diagnostics;
-  for (const Port& port : FindPorts(program.model, diagnostics)) roles.push_back(port.role);
+  for (const Port& port : FindPorts(program.model, OneRobot(), diagnostics)) roles.push_back(port.role);
   EXPECT_EQ(diagnostics.errors(), mistakes);
   return roles;
 }

@@ -19,9 +19,14 @@ const char* const kGo =
 Fleet Masses(size_t count, double duration = 1) {
   Fleet fleet;
   fleet.duration = duration;
-  for (size_t r = 0; r < count; ++r)
-    fleet.robots.push_back(
-        {"r" + std::to_string(r), "point_mass", {0, 2.0 * static_cast<double>(r), 0}, 0, {}, {}});
+  for (size_t r = 0; r < count; ++r) {
+    FleetRobot robot;
+    robot.name = "r" + std::to_string(r);
+    robot.model = "point_mass";
+    robot.position = {0, 2.0 * static_cast<double>(r), 0};
+    robot.make = [] { return MakeBody("point_mass"); };
+    fleet.robots.push_back(std::move(robot));
+  }
   return fleet;
 }
 

@@ -50,6 +50,22 @@ MUTANTS = {
     "shapeform_strange_neighbour": ("shapeform", [("summary left(i) -> j: j in ID\n", "")], "the neighbour may be nobody"),
     "addnums_no_atomic": ("addnums", [("        atomic:\n            sum = sum + pid * 2", "        if true:\n            sum = sum - pid * 2")],
                           "the sum shrinks"),
+    "platoon_no_gap": ("platoon", [("at[pid - 1] - gap", "at[pid - 1]")], "up to where the one before it was"),
+    "platoon_backwards": ("platoon", [("always old(Motion.psn.x) <= Motion.psn.x and Motion.psn.x", "always Motion.psn.x")],
+                          "the one before may drive backwards"),
+    "coverage_no_atomic": ("coverage", [("        atomic:\n            int next", "        if true:\n            int next")],
+                           "two claim the same cell"),
+    "consensus_no_atomic": ("consensus", [("        atomic:\n            if decision", "        if true:\n            if decision")],
+                            "two decide in one round"),
+    "auction_dearest": ("auction", [("argmin i in ID", "argmax i in ID")], "the dearest wins"),
+    "auction_too_soon": ("auction", [(" and (forall i in ID: bidding[i])\n    eff:\n        atomic:\n            winner = argmin",
+                                      "\n    eff:\n        atomic:\n            winner = argmin")], "somebody has not bid yet"),
+    "warehouse_no_atomic": ("warehouse", [("        atomic:\n            order[pid]", "        if true:\n            order[pid]")],
+                            "two take one order"),
+    "warehouse_no_pop": ("warehouse", [("            orders.pop()\n", "")], "an order stays in the queue"),
+    "warehouse_occupied": ("warehouse", [("                if not taken[k]:\n", "                if true:\n")], "a dock that is taken"),
+    "warehouse_twice": ("warehouse", [("assume initially: forall a, b in range(len(orders)): a != b implies orders[a].id != orders[b].id\n", "")],
+                        "two orders with one number"),
 }
 
 

@@ -214,7 +214,8 @@ class Formatter {
       return Line(Whole(start, body), first + " " + second);
     }
     if (e.kind == lang::ExprKind::kQuantifier) {
-      const std::string inner = Text(e.args[0]);
+      const auto range = lang::RangeOf(program_.exprs, e);
+      const std::string inner = Text(range ? range->body : e.args[0]);
       first += " " + second.substr(0, second.size() - inner.size() - 1);
       second = inner;
     } else if (!first.ends_with(':')) {

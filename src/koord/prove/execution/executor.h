@@ -191,7 +191,7 @@ class Executor {
   TermId InRange(TermId index, TermId length);
   TermId EqualValues(TermId a, TermId b, TypeId type);
   std::optional<int64_t> ListBound(size_t variable) const;
-  std::optional<int64_t> ConstantInt(TermId term) const;
+  std::optional<int64_t> ConstantInt(TermId term);
 
   Vocabulary& vocabulary_;
   expr::Arena& arena_;

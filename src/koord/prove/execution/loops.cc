@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "expr/substitute.h"
 #include "koord/prove/execution/executor.h"
 
 namespace rondo::koord {
@@ -12,7 +13,21 @@ using lang::TypeKind;
 
 // Loops are unrolled as often as something bounds them.
 
-std::optional<int64_t> Executor::ConstantInt(TermId term) const {
+// A parameter with a declared value is that value: every proof has it among its facts.
+std::optional<int64_t> Executor::ConstantInt(TermId term) {
+  constexpr int kDeepest = 8;  // parameters whose values are made of others
+  for (int depth = 0; depth < kDeepest && !arena_.IsNumber(term); ++depth) {
+    expr::Substitution declared;
+    for (size_t v = 0; v < model_.variables.size(); ++v) {
+      const Variable& variable = model_.variables[v];
+      if (variable.kind == VariableKind::kParam && variable.initial.valid() &&
+          model_.types.Is(variable.type, TypeKind::kInt))
+        declared.emplace(frame_.view->value[v], Eval(variable.initial));
+    }
+    const TermId known = Substitute(arena_, term, declared);
+    if (known == term) break;
+    term = known;
+  }
   if (!arena_.IsNumber(term) || !arena_.number(term).IsInteger()) return std::nullopt;
   const std::string digits = arena_.number(term).ToString();
   if (digits.size() > 12) return std::nullopt;
