@@ -8,6 +8,7 @@
 #include "driver/prove_choreographies.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
+#include "runs/helper_search.h"
 #include "runs/witness_search.h"
 #include "solve/cache/caching_solver.h"
 #include "solve/smtlib/smtlib_solver.h"
@@ -34,6 +35,7 @@ struct Options {
   std::string certificates;
   std::string svg;
   uint32_t reach = 0;
+  bool helpers = false;
   bool no_certify = false;
   bool no_cache = false;
   bool json = false;
@@ -61,6 +63,23 @@ nlohmann::json Envelope(const Options& options, const workspace::Session& sessio
           {"file", options.file},
           {"status", status},
           {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}};
+}
+
+runs::HelperRequest ToHelperRequest(const Options& options, const workspace::Session& session,
+                                    const koord::ProveOptions& prove) {
+  runs::HelperRequest request{options.file, {}, {}, prove};
+  for (size_t f = 0; f < session.sources.size(); ++f) {
+    const diag::FileId id(f);
+    (session.sources.path(id) == options.file ? request.program : request.spec) = session.sources.text(id);
+  }
+  return request;
+}
+
+std::string HelperText(const runs::Helpers& helpers) {
+  if (!helpers.proved) return fmt::format("\nno helper invariants found: {}\n", helpers.why);
+  std::string text = "\nwith these, everything is proved:\n";
+  for (const std::string& line : helpers.invariants) text += line + "\n";
+  return text;
 }
 
 ExitStatus Run(const Options& options) {
@@ -115,6 +134,16 @@ ExitStatus Run(const Options& options) {
     };
     reached = runs::SearchWitnesses(model, report, request, session.diagnostics);
   }
+  runs::Helpers helpers;
+  if (options.helpers && !report.AllProved()) {
+    ProgressLine line;
+    runs::HelperRequest request = ToHelperRequest(options, session, prove);
+    const InterruptScope interrupt(request.prove.stop);
+    request.prove.progress = [&](size_t done, size_t total, const std::string& what) {
+      line.Show(fmt::format("[helpers {}/{}] {}", done, total, what));
+    };
+    helpers = runs::FindHelpers(request, report);
+  }
   contracts::Discharge(*loaded, session, cache, options.file, report.basis);
   const ExitStatus status = StatusOf(report);
   if (options.json) {
@@ -123,6 +152,8 @@ ExitStatus Run(const Options& options) {
     for (const runs::Reached& r : reached)
       json["reach"].push_back(
           {{"invariant", r.invariant}, {"found", r.found}, {"text", r.text}, {"run", r.run}});
+    if (options.helpers && !report.AllProved())
+      json["helpers"] = {{"found", helpers.proved}, {"invariants", helpers.invariants}, {"why", helpers.why}};
     PrintJson(json);
     return status;
   }
@@ -134,6 +165,7 @@ ExitStatus Run(const Options& options) {
   }
   for (const runs::Reached& r : reached) Print(fmt::format("\nsearch: {}\n", r.text));
   Print(contracts::ProveSummary(report, prove));
+  if (options.helpers && !report.AllProved()) Print(HelperText(helpers));
   PrintStatus(status);
   return status;
 }
@@ -162,7 +194,7 @@ void Refuse(const Command& verb, std::initializer_list<const char*> names, const
 
 ExitStatus Dispatch(Options& options, const Command& verb) {
   if (workspace::IsModuleFile(options.files[0])) {
-    Refuse(verb, {"--spec", "--robots", "--cross-check", "--reach"}, "choreographies");
+    Refuse(verb, {"--spec", "--robots", "--cross-check", "--reach", "--helpers"}, "choreographies");
     return ProveChoreographies(ToChoreographyOptions(options));
   }
   Refuse(verb, {"--option", "--certificates", "--svg", "--no-certify"}, "Koord programs");
@@ -200,6 +232,8 @@ void AddProveVerb(CLI::App& app, ExitStatus& status) {
   verb.Option("--reach", options->reach,
               "search so many rounds for runs that violate what is not inductive or could not be decided")
       .Between(1U, 1'000'000U);
+  verb.Flag("--helpers", options->helpers,
+            "look for helper invariants, half a minute at most, if something is not inductive");
   verb.Flag("--no-certify", options->no_certify, "do not write and check certificates of choreographies");
   verb.Flag("--no-cache", options->no_cache, "neither use nor fill the proof cache");
   verb.Flag("--json", options->json, "the verdicts as JSON on standard output");

@@ -129,7 +129,8 @@ class Printer {
       case ExprKind::kQuantifier:
       case ExprKind::kFold: {
         if (const auto range = RangeOf(pool_, e)) {
-          const std::string limits = (IsZero(range->from) ? "" : Print(range->from, 0) + ", ") + Print(range->to, 0);
+          const std::string limits =
+              (IsZero(range->from) ? "" : Print(range->from, 0) + ", ") + Print(range->to, 0);
           return fmt::format("{} {} in range({}): {}", e.text, fmt::join(e.binders[0].names, ", "), limits,
                              Print(range->body, 0));
         }
@@ -172,8 +173,7 @@ std::optional<RangeDomain> RangeOf(const ExprPool& pool, const Expr& quantifier)
   const std::string_view word = quantifier.text == "forall" ? "implies" : "and";
   const bool ints = binder.domain.valid() && pool[binder.domain].kind == ExprKind::kName &&
                     pool[binder.domain].text == "int";
-  if (!ints || body.kind != ExprKind::kBinary || body.text != word)
-    return std::nullopt;
+  if (!ints || body.kind != ExprKind::kBinary || body.text != word) return std::nullopt;
   RangeDomain range{{}, {}, body.args[1]};
   // (from <= a and a < to) and (from <= b and b < to): the last pair outermost.
   std::vector<ExprId> limits;

@@ -70,6 +70,26 @@ workspace::LoadedModule* FleetFiles::Module(const std::string& from, diag::Span 
   return module.get();
 }
 
+// Does everything that the fleet decides start where its model says that it is?
+bool FleetFiles::StartsInRange(const sim::RobotCode& code, const sim::FleetRobot& robot) {
+  for (size_t v = 0; v < code.states + code.memory + code.inputs; ++v) {
+    const bool placed = std::ranges::find(code.position, v) != code.position.end() || v == code.heading;
+    const bool disturbs = std::ranges::find(code.disturbances, v) != code.disturbances.end();
+    const sim::RobotVariable& variable = code.variables[v];
+    const auto given = robot.initial.find(variable.name);
+    if (given == robot.initial.end() && (placed || disturbs)) continue;
+    const double value = given == robot.initial.end() ? 0 : given->second;
+    if (value >= variable.low && value <= variable.high) continue;
+    session_.diagnostics
+        .Report(Kind::kFleetValue, robot.span,
+                fmt::format("`{}` starts with {:.6g}, and it is in [{:.6g}, {:.6g}]", variable.name, value,
+                            variable.low, variable.high))
+        .Help(fmt::format("say with what: `initial = {{ {} = ... }}`, in SI units", variable.name));
+    return false;
+  }
+  return true;
+}
+
 sim::BodyFactory FleetFiles::Model(const sim::FleetRobot& robot) {
   std::string key = robot.from + "\n" + robot.model;
   for (const auto* values : {&robot.parameters, &robot.initial}) {
@@ -137,6 +157,7 @@ sim::BodyFactory FleetFiles::Model(const sim::FleetRobot& robot) {
         .Help(fmt::format("it has {}", fmt::join(all, ", ")));
     return {};
   }
+  if (!StartsInRange(*shared, robot)) return {};
   const sim::BodyFactory factory = [shared, initial = robot.initial, of_all]() -> std::unique_ptr<sim::Body> {
     auto body = std::make_unique<sim::ModelledBody>(shared, initial);
     for (const auto& [name, value] : of_all) body->Set(name, value);

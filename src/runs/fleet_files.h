@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sim/fleet/fleet.h"
+#include "sim/models/robot_code.h"
 #include "workspace/module_files.h"
 #include "workspace/session.h"
 
@@ -31,6 +32,7 @@ class FleetFiles {
  private:
   base::Result<std::string> Bytes(const std::string& path);
   workspace::LoadedModule* Module(const std::string& from, diag::Span span);
+  bool StartsInRange(const sim::RobotCode& code, const sim::FleetRobot& robot);
   sim::BodyFactory Model(const sim::FleetRobot& robot);
 
   workspace::Session& session_;

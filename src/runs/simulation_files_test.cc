@@ -51,7 +51,7 @@ TEST(SimulationFileNames, EachTextIsKeptAsWhatItIs) {
   session.sources.Add("d/a.spec", "specification");
   session.sources.Add("d/a.toml", "fleet");
   sim::SimulationOptions options;
-  KeepTexts({"d/a.koord", "", "d/a.toml"}, session, options);
+  KeepTexts({"d/a.koord", "", "d/a.toml"}, session, {}, options);
   EXPECT_EQ(options.program, "program");
   EXPECT_EQ(options.spec, "specification");
   EXPECT_EQ(options.fleet, "fleet");

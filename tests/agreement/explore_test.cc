@@ -33,6 +33,7 @@ class Texts {
     record_ = Pick(5) == 0;
     points_ = Pick(6) == 0;
     folds_ = Pick(3) == 0;
+    lists_ = Pick(4) == 0;
     std::string text;
     if (record_) text += "def adt Rec:\n    int a\n    int k[2]\n";
     if (cells_ || nested_)
@@ -45,7 +46,9 @@ class Texts {
     text += "local:\n    int n = 0\n    bool b = false\n";
     if (record_) text += "    Rec r\n";
     if (points_) text += "    pos p = pos(0, 0, 0)\n";
-    if (cells_ || nested_ || record_) text += "init:\n";
+    if (lists_) text += "    List<int> l\n";
+    if (cells_ || nested_ || record_ || lists_) text += "init:\n";
+    if (lists_) text += "    l = [1, 2]\n";
     if (cells_) text += "    c[0] = 0\n    c[1] = 0\n    c[2] = 0\n";
     if (record_) text += "    r.a = 0\n    r.k[0] = 0\n    r.k[1] = 0\n";
     for (const char* cell : {"0][0", "0][1", "0][2", "1][0", "1][1", "1][2"}) {
@@ -57,6 +60,7 @@ class Texts {
     for (size_t i = 0; i < invariants; ++i)
       text += "invariant i" + std::to_string(i) + (Pick(5) == 0 ? " at rounds: " : ": ") + Invariant() + "\n";
     if (sensor_ && Pick(2) == 0) text += "assume M.calm when M.power > 0 always M.near == old(M.near)\n";
+    if (sensor_ && Pick(3) == 0) text += "assume M.back when M.power > 1 finally M.near\n";
     return text;
   }
 
@@ -148,6 +152,7 @@ class Texts {
 
   std::string Statement(const std::string& indent, int depth) {
     if (Pick(6) == 0) return indent + Special() + "\n";
+    if (lists_ && Pick(3) == 0) return ChangeOfList(indent);
     if (local_ && Pick(5) == 0)
       return indent +
              One({"v -= 1", "v *= 2", "v /= 2", "v--", "pass", "n = v - v", "v = n",
@@ -184,6 +189,22 @@ class Texts {
         return indent + "atomic:\n" + Statement(indent + "    ", depth - 1) +
                Statement(indent + "    ", depth - 1);
     }
+  }
+
+  // Mostly possible; the list stays short.
+  std::string ChangeOfList(const std::string& indent) {
+    const std::string k = One({"0", "1", "n", "len(l) - 1", "len(l)"});
+    const std::string statement =
+        One({"l.insert(K, n)", "l.insert(K, 2)", "l.pop(K)", "l = l[K:]", "l = l[0:K]", "l = l[1:K]"});
+    std::string written = statement;
+    while (written.find('K') != std::string::npos) written.replace(written.find('K'), 1, k);
+    const bool grows = statement.starts_with("l.insert");
+    const std::string fits = grows                         ? "0 <= " + k + " and " + k + " <= len(l) and len(l) < 3"
+                             : statement == "l = l[1:K]"   ? "1 <= " + k + " and " + k + " <= len(l)"
+                             : statement.starts_with("l =") ? "0 <= " + k + " and " + k + " <= len(l)"
+                                                            : "0 <= " + k + " and " + k + " < len(l)";
+    const std::string guard = grows && Pick(6) == 0 ? "len(l) < 3" : Pick(6) == 0 ? "b" : fits;
+    return indent + "if " + guard + ":\n" + indent + "    " + written + "\n";
   }
 
   // Choices, and writes to what only some programs have.
@@ -233,6 +254,10 @@ class Texts {
                   "(max i in ID: x[i]) <= s + 1", "(min i in ID: n[i]) <= 0", "(argmin i in ID: x[i]) == 0",
                   "(count i in ID: up[i]) >= 1 or s <= 1", "forall j in ID: x[j] <= (max i in ID: x[i])",
                   "(count i in ID: b[i]) < N_sys or t >= 1"});
+    if (lists_ && Pick(2) == 0)
+      return One({"forall i in ID: len(l[i]) <= 3", "forall i in ID: len(l[i]) <= 2", "forall i in ID: forall a in l[i]: a > 0",
+                  "forall i in ID: forall k in range(len(l[i])): l[i][k] <= 2",
+                  "forall i in ID: exists k in range(len(l[i])): l[i][k] == 2", "forall i in ID: len(l[i]) == 0 or l[i][0] >= 1"});
     if (Pick(4) == 0) return Existential();
     switch (Pick(8)) {
       case 0:
@@ -278,6 +303,7 @@ class Texts {
   bool record_ = false;
   bool points_ = false;
   bool folds_ = false;
+  bool lists_ = false;
 };
 
 struct Loaded {

@@ -116,6 +116,27 @@ TEST_F(Instantiation, ListsBehaveLikeLists) {
   // Removing may shorten, or may change nothing.
   EXPECT_FALSE(is_unsat(arena_.Lt(arena_.Length(removed), length)));
   EXPECT_FALSE(is_unsat(arena_.Eq(arena_.Length(removed), length)));
+  const TermId one = arena_.IntNumber(1);
+  const TermId two = arena_.IntNumber(2);
+  const auto long_enough = [&](TermId claim) { return arena_.And(arena_.Le(two, length), claim); };
+  const auto differ = [&](TermId a, TermId b) { return arena_.Not(arena_.Eq(a, b)); };
+  // What is inserted is there, what stood there stands behind it, and the rest stays.
+  const TermId inserted = arena_.Insert(l, one, e);
+  EXPECT_TRUE(is_unsat(long_enough(differ(arena_.Length(inserted), arena_.Add(length, one)))));
+  EXPECT_TRUE(is_unsat(long_enough(differ(arena_.At(inserted, one), e))));
+  EXPECT_TRUE(is_unsat(long_enough(differ(arena_.At(inserted, zero), arena_.At(l, zero)))));
+  EXPECT_TRUE(is_unsat(long_enough(differ(arena_.At(inserted, two), arena_.At(l, one)))));
+  EXPECT_FALSE(is_unsat(long_enough(differ(arena_.At(inserted, one), arena_.At(l, one)))));
+  const TermId dropped = arena_.Drop(l, zero);
+  EXPECT_TRUE(is_unsat(long_enough(differ(arena_.Length(dropped), arena_.Sub(length, one)))));
+  EXPECT_TRUE(is_unsat(long_enough(differ(arena_.At(dropped, zero), arena_.At(l, one)))));
+  EXPECT_FALSE(is_unsat(long_enough(differ(arena_.At(dropped, zero), arena_.At(l, zero)))));
+  const TermId slice = arena_.Slice(l, one, two);
+  EXPECT_TRUE(is_unsat(long_enough(differ(arena_.Length(slice), one))));
+  EXPECT_TRUE(is_unsat(long_enough(differ(arena_.At(slice, zero), arena_.At(l, one)))));
+  EXPECT_FALSE(is_unsat(long_enough(differ(slice, l))));
+  // What is impossible changes nothing.
+  EXPECT_TRUE(is_unsat(arena_.And(arena_.Lt(length, one), differ(dropped, l))));
   const TermId changed = arena_.Set(l, zero, e);
   EXPECT_TRUE(
       is_unsat(arena_.And(arena_.Lt(zero, length), arena_.Not(arena_.Eq(arena_.At(changed, zero), e)))));

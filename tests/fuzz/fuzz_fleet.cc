@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const diag::FileId file = sources.Add("input", std::string(reinterpret_cast<const char*>(data), size));
   const sim::Fleet fleet = sim::ReadFleet(sources, file, diagnostics);
   sim::Fleet three;
-  for (const char* name : {"r0", "r1", "r2"}) three.robots.push_back({name, "point_mass", {}, 0, {}, {}});
+  for (const char* name : {"r0", "r1", "r2"}) three.robots.emplace_back().name = name;
   const sim::NetworkFaults network = sim::ReadNetwork(sources, file, three, diagnostics);
   for (const sim::cores::Fault& fault : network.faults) {
     if (fault.robot > 2 || fault.other > 2 || fault.at < 0 || fault.length < 0) __builtin_trap();

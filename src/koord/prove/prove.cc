@@ -37,6 +37,17 @@ class Prover {
     tasks_ = ListTasks(problems);
     for (const Task& task : tasks_)
       report_.obligations += task.kind == TaskKind::kRound ? problems.columns() : task.IsObligation() ? 1 : 0;
+    if (options_.quick) {
+      std::vector<Task*> last;
+      for (Task* task : Undecided()) {
+        if (task->kind != TaskKind::kDefined && task->subject + 1 == model_.invariants.size())
+          last.push_back(task);
+      }
+      Solve(last, Effort::kFew);
+      report_.interrupted = options_.stop.cancelled();
+      MakeRows(problems);
+      return std::move(report_);
+    }
     Solve(All(), Effort::kFew);
     TryConsequences();
     Solve(Undecided(), Effort::kMore);

@@ -23,7 +23,8 @@ struct ProveOptions {
   std::chrono::milliseconds timeout{10'000};   ///< for each question to the solver
   const solve::Solver* solver = nullptr;       ///< answers the questions; must be given
   const solve::Solver* cross_check = nullptr;  ///< decides every question a second time
-  std::filesystem::path smt_out;               ///< where to write the obligations as SMT-LIB 2
+  bool quick = false;  ///< looks for proofs of the last invariant only, with little effort; no diagnostics
+  std::filesystem::path smt_out;  ///< where to write the obligations as SMT-LIB 2
   /// Receives how many questions are answered, how many there are, and what was asked last. Called from any
   /// thread, one call at a time.
   std::function<void(size_t done, size_t total, const std::string& what)> progress;

@@ -224,12 +224,13 @@ void Reporter::Told(Row& row, const InvariantDef& def, const Witness& witness) {
                                             [](const AssumeDef* a) { return a->kind == AssumeKind::kPort; });
   if (witness.environment && promised && !witness.reachable) {
     report.Help(
-        "add an invariant that excludes the state at the start of this round, or say more of what the controller\n"
-        "guarantees");
+        "add an invariant that excludes the state at the start of this round (`rondo prove --helpers` looks for one),\n"
+        "or say more of what the controller guarantees");
   } else if (witness.environment) {
     report.Help("say what the controller guarantees: `assume M when ... always ...`");
   } else if (!witness.reachable) {
-    report.Help("add an invariant that excludes the state at the start of this round");
+    report.Help(
+        "add an invariant that excludes the state at the start of this round; `rondo prove --helpers` looks for one");
   }
 }
 

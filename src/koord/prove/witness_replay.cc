@@ -86,6 +86,14 @@ class Replay {
     return result;
   }
 
+  std::vector<bool> AtStart() {
+    std::vector<bool> holds;
+    lenient_ = true;
+    if (!Read()) return holds;
+    for (size_t i = 0; i < team_->invariants().size(); ++i) holds.push_back(Holds(start_, i));
+    return holds;
+  }
+
  private:
   WitnessReplay Compare() {
     if (witness_.of == WitnessOf::kInitial) {
@@ -136,6 +144,8 @@ class Replay {
       std::vector<Word> words;
       std::vector<Word> after;
       std::vector<Word> then;
+      if (lenient_ && !ToWords(model_.types, variable.type, value.start, words)) continue;
+      words.clear();
       if (!ToWords(model_.types, variable.type, value.start, words) ||
           (value.end && !ToWords(model_.types, variable.type, *value.end, after)) ||
           (value.then && !ToWords(model_.types, variable.type, *value.then, then)))
@@ -159,7 +169,7 @@ class Replay {
     for (const int64_t r : witness_.stopped) end_[Mark(r)] = 1;
     for (size_t r = 0; r < team_->robots(); ++r)
       known[team_->layout().block(r) + team_->layout().stopped()] = true;
-    if (!std::all_of(known.begin(), known.end(), [](bool k) { return k; }))
+    if (!lenient_ && !std::all_of(known.begin(), known.end(), [](bool k) { return k; }))
       return Refuse("the counterexample does not give every value");
     return true;
   }
@@ -340,6 +350,7 @@ class Replay {
   std::vector<Word> then_;  // each robot's part: when its actuators change
   std::string why_;
   bool undefined_ = false;
+  bool lenient_ = false;  // values that no run can have are zero
 };
 
 }  // namespace
@@ -348,6 +359,10 @@ WitnessReplay ReplayWitness(const Model& model, size_t invariant, const WitnessS
   if (witness.robots < 1 || witness.robots > 64)
     return {ReplayOutcome::kNotPossible, "the team is too large"};
   return Replay(model, invariant, witness).Run();
+}
+
+std::vector<bool> InvariantsAtStart(const Model& model, const WitnessState& witness) {
+  return Replay(model, 0, witness).AtStart();
 }
 
 }  // namespace rondo::koord

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "koord/check/model.h"
 #include "koord/prove/results.h"
@@ -29,5 +30,10 @@ bool ToWords(const lang::TypeTable& types, TypeId type, const expr::Value& value
 /// the symbolic execution that found it. Its start must satisfy the invariants, a choice of the robots must
 /// lead to its end, the environment must keep the assumptions, and the invariant must fail.
 WitnessReplay ReplayWitness(const Model& model, size_t invariant, const WitnessState& witness);
+
+/// Returns, by invariant, whether it holds where a counterexample starts, as far as its values can be those of a run:
+/// others, such as lists, are taken for zero. Empty if the program cannot be executed. A hint, and no evidence.
+/// @param model  has the variables of the program that the counterexample is of, and may have more invariants.
+std::vector<bool> InvariantsAtStart(const Model& model, const WitnessState& witness);
 
 }  // namespace rondo::koord

@@ -104,6 +104,38 @@ TEST_F(Lists, RemovingTakesTheFirstEqualItem) {
   EXPECT_THAT(Made(), ElementsAre(1, 1, 3, 3, 1, 2));
 }
 
+TEST_F(Lists, AnItemIsInsertedBetweenOthers) {
+  ASSERT_TRUE(Execute({List({1, 2, 3, 4}), FromInt(1), 7, 8}, {Op::kListInsert, 2}));
+  EXPECT_THAT(Made(), ElementsAre(1, 2, 7, 8, 3, 4));
+  ASSERT_TRUE(Execute({List({1, 2, 3, 4}), FromInt(2), 7, 8}, {Op::kListInsert, 2}));
+  EXPECT_THAT(Made(), ElementsAre(1, 2, 3, 4, 7, 8));
+  for (const int64_t beyond : {int64_t{-1}, int64_t{3}}) {
+    EXPECT_FALSE(Execute({List({1, 2, 3, 4}), FromInt(beyond), 7, 8}, {Op::kListInsert, 2}));
+    EXPECT_EQ(machine_->fault(), Fault::kIndex);
+  }
+}
+
+TEST_F(Lists, AnItemIsTakenAway) {
+  ASSERT_TRUE(Execute({List({1, 2, 3, 4, 5, 6}), FromInt(1)}, {Op::kListDrop, 2}));
+  EXPECT_THAT(Made(), ElementsAre(1, 2, 5, 6));
+  for (const int64_t beyond : {int64_t{-1}, int64_t{3}}) {
+    EXPECT_FALSE(Execute({List({1, 2, 3, 4, 5, 6}), FromInt(beyond)}, {Op::kListDrop, 2}));
+    EXPECT_EQ(machine_->fault(), Fault::kIndex);
+  }
+}
+
+TEST_F(Lists, ASliceIsAPart) {
+  const Word list = List({1, 2, 3, 4, 5, 6});
+  ASSERT_TRUE(Execute({list, FromInt(1), FromInt(3)}, {Op::kListSlice, 2}));
+  EXPECT_THAT(Made(), ElementsAre(3, 4, 5, 6));
+  ASSERT_TRUE(Execute({list, FromInt(2), FromInt(2)}, {Op::kListSlice, 2}));
+  EXPECT_THAT(Made(), IsEmpty());
+  for (const auto& [from, to] : {std::pair(-1, 2), std::pair(2, 1), std::pair(0, 4)}) {
+    EXPECT_FALSE(Execute({list, FromInt(from), FromInt(to)}, {Op::kListSlice, 2}));
+    EXPECT_EQ(machine_->fault(), Fault::kIndex);
+  }
+}
+
 TEST_F(Lists, ItemsAreNotLookedForAcrossTheirBorders) {
   EXPECT_FALSE(Execute({List({1, 2, 3, 4}), 2, 3}, {Op::kListRemove, 2}));
   EXPECT_EQ(machine_->fault(), Fault::kRemove);
