@@ -66,6 +66,16 @@ std::string Summary(const sim::NetworkReport& network, const sim::SimulationRepo
   return text;
 }
 
+// Why a run that violates nothing says less than it could.
+std::string Undecided(const sim::SimulationReport& report, const sim::Fleet& fleet) {
+  std::string text;
+  if (!report.unchecked.empty())
+    text += fmt::format("  not checked: {}\n", fmt::join(report.unchecked, ", "));
+  if (fleet.until == sim::Until::kMapped && report.ended == sim::Ending::kTime)
+    text += "  the time was over before the map was complete\n";
+  return text;
+}
+
 std::string Summary(const sim::SimulationReport& report, double seconds,
                     const std::vector<sim::FleetRobot>& robots) {
   const bool real = seconds > 0.005;
@@ -238,7 +248,7 @@ ExitStatus Run(const Options& options) {
     return status;
   }
   Print(fmt::format("{}: {}, seed {}\n{}", files.program, base::Counted(fleet.robots.size(), "robot"),
-                    simulation.seed, Summary(report, seconds, fleet.robots)));
+                    simulation.seed, Summary(report, seconds, fleet.robots) + Undecided(report, fleet)));
   if (written && writer) Print(fmt::format("trace: {}\n", options.trace));
   PrintDiagnostics(session.sources, session.diagnostics);
   return status;

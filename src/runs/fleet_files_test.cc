@@ -106,11 +106,14 @@ TEST_F(Tanks, WithMistakesAreRefused) {
   EXPECT_EQ(message("parameters = { lake = 1 }\n"), "`Tank` has no parameter `lake`");
   EXPECT_EQ(message("initial = { leval = 1 }\n"), "`Tank` has no state `leval`");
   EXPECT_EQ(message("initial = { level = 11 }\n"), "`level` starts with 11, and it is in [0, 10]");
-  folder_.Write("tank.rondo", "robot Tank { state x: number in [0, 1] input v: number dynamics { x' = v / 1 s } }\n");
+  folder_.Write("tank.rondo",
+                "robot Tank { state x: number in [0, 1] input v: number dynamics { x' = v / 1 s } }\n");
   EXPECT_TRUE(message("").starts_with("`Tank` cannot be a body: nobody sets the input `v`")) << message("");
   folder_.Write("tank.rondo", "robot Tank { state x: number in [0, 1] }\n");
-  EXPECT_TRUE(message("").starts_with("`Tank` cannot be a body: nothing is known about how `x` changes")) << message("");
-  folder_.Write("tank.rondo", "robot Tank { param a: length state x: length in [0, 1 m] dynamics { x' = a / 1 s } }\n");
+  EXPECT_TRUE(message("").starts_with("`Tank` cannot be a body: nothing is known about how `x` changes"))
+      << message("");
+  folder_.Write("tank.rondo",
+                "robot Tank { param a: length state x: length in [0, 1 m] dynamics { x' = a / 1 s } }\n");
   EXPECT_EQ(message(""), "`Tank` has parameters without a value");
   EXPECT_EQ(message("parameters = { a = 0.5 }\n"), "");
 }

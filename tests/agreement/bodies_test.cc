@@ -47,7 +47,8 @@ TEST_P(EveryPair, GoesTheSameWay) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Bodies, EveryPair,
-                         testing::Values(Pair{"unicycle", "Unicycle"}, Pair{"car", "Bicycle"}, Pair{"cart", "OmniCart"}),
+                         testing::Values(Pair{"unicycle", "Unicycle"}, Pair{"car", "Bicycle"},
+                                         Pair{"cart", "OmniCart"}),
                          [](const auto& test) { return test.param.model; });
 
 }  // namespace

@@ -153,6 +153,7 @@ class Texts {
   std::string Statement(const std::string& indent, int depth) {
     if (Pick(6) == 0) return indent + Special() + "\n";
     if (lists_ && Pick(3) == 0) return ChangeOfList(indent);
+    if (folds_ && Pick(3) == 0) return Counted(indent);
     if (local_ && Pick(5) == 0)
       return indent +
              One({"v -= 1", "v *= 2", "v /= 2", "v--", "pass", "n = v - v", "v = n",
@@ -191,6 +192,25 @@ class Texts {
     }
   }
 
+  // What counts and sums are kept by: with a lock, and without.
+  std::string Counted(const std::string& indent) {
+    const bool lock = Pick(4) != 0;
+    const std::string deep = indent + (lock ? "    " : "");
+    const std::string change = One({"if (count i in ID: up[i]) < 2:\n    up[pid] = true",
+                                    "if x[pid] < 2 and s < 2:\n    x[pid] += 1\n    s += 1",
+                                    "if x[pid] > 0 and s > 0:\n    x[pid] -= 1\n    s -= 1",
+                                    "if up[pid]:\n    up[pid] = false\n    t = 0",
+                                    "if not up[pid] and t < 2:\n    up[pid] = true\n    t += 1",
+                                    "s = min((count i in ID: up[i]), 2)", "if x[pid] == 0:\n    x[pid] = 1"});
+    std::string text = lock ? indent + "atomic:\n" : "";
+    for (size_t from = 0; from < change.size();) {
+      const size_t end = std::min(change.find('\n', from), change.size());
+      text += deep + change.substr(from, end - from) + "\n";
+      from = end + 1;
+    }
+    return text;
+  }
+
   // Mostly possible; the list stays short.
   std::string ChangeOfList(const std::string& indent) {
     const std::string k = One({"0", "1", "n", "len(l) - 1", "len(l)"});
@@ -199,8 +219,8 @@ class Texts {
     std::string written = statement;
     while (written.find('K') != std::string::npos) written.replace(written.find('K'), 1, k);
     const bool grows = statement.starts_with("l.insert");
-    const std::string fits = grows                         ? "0 <= " + k + " and " + k + " <= len(l) and len(l) < 3"
-                             : statement == "l = l[1:K]"   ? "1 <= " + k + " and " + k + " <= len(l)"
+    const std::string fits = grows ? "0 <= " + k + " and " + k + " <= len(l) and len(l) < 3"
+                             : statement == "l = l[1:K]"    ? "1 <= " + k + " and " + k + " <= len(l)"
                              : statement.starts_with("l =") ? "0 <= " + k + " and " + k + " <= len(l)"
                                                             : "0 <= " + k + " and " + k + " < len(l)";
     const std::string guard = grows && Pick(6) == 0 ? "len(l) < 3" : Pick(6) == 0 ? "b" : fits;
@@ -253,11 +273,16 @@ class Texts {
       return One({"(count i in ID: up[i]) <= 1", "(count i in ID: up[i]) <= 2", "(sum i in ID: x[i]) <= 2",
                   "(max i in ID: x[i]) <= s + 1", "(min i in ID: n[i]) <= 0", "(argmin i in ID: x[i]) == 0",
                   "(count i in ID: up[i]) >= 1 or s <= 1", "forall j in ID: x[j] <= (max i in ID: x[i])",
-                  "(count i in ID: b[i]) < N_sys or t >= 1"});
+                  "(count i in ID: b[i]) < N_sys or t >= 1", "(sum i in ID: x[i]) == s",
+                  "(sum i in ID: x[i]) >= s", "(count i in ID: up[i]) == t", "(count i in ID: up[i]) >= s",
+                  "(sum i in ID: x[i]) <= 2 * N_sys", "(sum i in ID: x[i]) >= 0",
+                  "(count i in ID: x[i] > 0) >= s", "(sum i in ID: x[i]) >= (count i in ID: x[i] > 0)"});
     if (lists_ && Pick(2) == 0)
-      return One({"forall i in ID: len(l[i]) <= 3", "forall i in ID: len(l[i]) <= 2", "forall i in ID: forall a in l[i]: a > 0",
+      return One({"forall i in ID: len(l[i]) <= 3", "forall i in ID: len(l[i]) <= 2",
+                  "forall i in ID: forall a in l[i]: a > 0",
                   "forall i in ID: forall k in range(len(l[i])): l[i][k] <= 2",
-                  "forall i in ID: exists k in range(len(l[i])): l[i][k] == 2", "forall i in ID: len(l[i]) == 0 or l[i][0] >= 1"});
+                  "forall i in ID: exists k in range(len(l[i])): l[i][k] == 2",
+                  "forall i in ID: len(l[i]) == 0 or l[i][0] >= 1"});
     if (Pick(4) == 0) return Existential();
     switch (Pick(8)) {
       case 0:

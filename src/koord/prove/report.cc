@@ -296,7 +296,8 @@ void Reporter::Undecided(Row& row, const Cell& cell, Span span, const Witness* c
     report.Note(fmt::format("{}: {}", options_.solver->name(), cell.reason));
     if (!options_.robots && Counts(model_, span))
       report.Note(
-          "for every N, of `sum` over robots nothing is known, and of `count` only whether it is 0, 1, more, or all");
+          "for every N, `count` and `sum` are known as far as at most one robot changes at a time (under one lock), or all change\n"
+          "in one direction; else only whether `count` is 0, 1, more, or all");
     // More time helps where time was short; a number, where there is none yet.
     const std::string_view robots = "fix the number of robots (`--robots 3`)";
     if (!options_.robots) {

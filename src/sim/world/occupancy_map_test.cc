@@ -19,7 +19,8 @@ base::Result<OccupancyMap> Read(const Files& files) {
   });
 }
 
-const std::string kYaml = "image: map.pgm\nresolution: 0.5\norigin: [-1, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+const std::string kYaml =
+    "image: map.pgm\nresolution: 0.5\norigin: [-1, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
 std::string Pgm(int columns, int rows, const std::string& cells) {
   return "P5\n# a comment\n" + std::to_string(columns) + " " + std::to_string(rows) + "\n255\n" + cells;
@@ -37,7 +38,8 @@ int WallsAt(const OccupancyMap& map, int rows, int column, int row) {
 
 TEST(OccupancyMap, OccupiedAndUnknownCellsAreWalls) {
   // Free, unknown (grey), occupied; the second row is the lower one.
-  const auto map = Read({{"maps/map.yaml", kYaml}, {"maps/map.pgm", Pgm(3, 2, {"\xfe\xcd\x00\xfe\xfe\x00", 6})}});
+  const auto map =
+      Read({{"maps/map.yaml", kYaml}, {"maps/map.pgm", Pgm(3, 2, {"\xfe\xcd\x00\xfe\xfe\x00", 6})}});
   ASSERT_TRUE(map.ok()) << map.error().message;
   EXPECT_EQ(map.value().low[0], -1);
   EXPECT_EQ(map.value().high[0], 0.5);
@@ -55,13 +57,15 @@ TEST(OccupancyMap, NegationModesAndThresholdsCount) {
     const auto map = Read({{"maps/map.yaml", kYaml + more}, {"maps/map.pgm", Pgm(4, 1, cells)}});
     EXPECT_TRUE(map.ok()) << map.error().message;
     std::string text;
-    for (int column = 0; column < 4 && map.ok(); ++column) text += WallsAt(map.value(), 1, column, 0) > 0 ? '#' : '.';
+    for (int column = 0; column < 4 && map.ok(); ++column)
+      text += WallsAt(map.value(), 1, column, 0) > 0 ? '#' : '.';
     return text;
   };
   EXPECT_EQ(walls(""), "###.");
   EXPECT_EQ(walls("mode: raw\n"), ".###");  // 0: free; 50, 100: occupied; 255: unknown
-  const auto negated = Read({{"maps/map.yaml", "image: map.pgm\nresolution: 0.5\norigin: [-1, 2, 0]\nnegate: 1\n"},
-                             {"maps/map.pgm", Pgm(4, 1, cells)}});
+  const auto negated =
+      Read({{"maps/map.yaml", "image: map.pgm\nresolution: 0.5\norigin: [-1, 2, 0]\nnegate: 1\n"},
+            {"maps/map.pgm", Pgm(4, 1, cells)}});
   ASSERT_TRUE(negated.ok());
   EXPECT_EQ(WallsAt(negated.value(), 1, 0, 0), 0);
   EXPECT_EQ(WallsAt(negated.value(), 1, 3, 0), 1);
@@ -78,7 +82,8 @@ TEST(OccupancyMap, WallsCoverTheirCellsOnce) {
     ASSERT_TRUE(map.ok());
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < columns; ++column)
-        EXPECT_EQ(WallsAt(map.value(), rows, column, row), cells[static_cast<size_t>(row * columns + column)] == 0 ? 1 : 0);
+        EXPECT_EQ(WallsAt(map.value(), rows, column, row),
+                  cells[static_cast<size_t>(row * columns + column)] == 0 ? 1 : 0);
     }
   }
 }
@@ -113,11 +118,13 @@ TEST(OccupancyMap, WhatIsWrongIsSaid) {
   };
   const std::string image = Pgm(1, 1, "\xfe");
   EXPECT_EQ(message(kYaml, image), "fine");
-  EXPECT_EQ(message("image: map.pgm\norigin: [0, 0, 0]\n", image), "cannot use the map `maps/map.yaml`: it has no `resolution`");
+  EXPECT_EQ(message("image: map.pgm\norigin: [0, 0, 0]\n", image),
+            "cannot use the map `maps/map.yaml`: it has no `resolution`");
   EXPECT_EQ(message("image: map.pgm\nresolution: 0\norigin: [0, 0, 0]\n", image),
             "cannot use the map `maps/map.yaml`: `resolution` must be the side of a cell in metres");
-  EXPECT_EQ(message("image: map.pgm\nresolution: 1\norigin: [0, 0, 1]\n", image),
-            "cannot use the map `maps/map.yaml`: its `origin` is turned: only maps along the axes can be read");
+  EXPECT_EQ(
+      message("image: map.pgm\nresolution: 1\norigin: [0, 0, 1]\n", image),
+      "cannot use the map `maps/map.yaml`: its `origin` is turned: only maps along the axes can be read");
   EXPECT_EQ(message(kYaml + "mode: tetra\n", image),
             "cannot use the map `maps/map.yaml`: its `mode` is `tetra`: none of trinary, scale, raw");
   EXPECT_NE(message("a: [", image).find("cannot use the map `maps/map.yaml`: yaml-cpp"), std::string::npos);

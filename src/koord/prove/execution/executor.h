@@ -93,7 +93,8 @@ class Executor {
   /// it may have none.
   TermId Value(ExprId e, TypeId type, const View& parameters, TermId robot);
   /// Returns what is known of the folds over robots that were evaluated so far (`min i in ID: e`), unless they were spelled
-  /// out: of `min` and the like everything, of `count` whether it is 0, 1, more, or all, of `sum` nothing.
+  /// out: of `min` and the like everything; of `count` whether it is 0, 1, more, or all; of `sum` its sign by those of its parts;
+  /// of both, how their values at different moments differ if at most one robot changes, or all in one direction.
   const std::vector<TermId>& Folds() const { return folds_; }
   /// Reports whether a formula speaks of a fold that is not spelled out.
   bool MentionsFold(TermId formula) const;
@@ -148,6 +149,17 @@ class Executor {
   TermId Folded(FoldKind kind, const std::vector<TermId>& values);
   TermId Plus(TermId a, TermId b);
   TermId Defined(FoldKind kind, TermId robot, TermId body, const std::vector<TermId>& parameters);
+  // A number of robots, or a sum over them: of what, and its value.
+  struct Additive {
+    TermId robot, body, value;
+  };
+  void Compare(FoldKind kind, ExprId id, const Additive& now);
+  TermId SomeRobot(const char* name);
+  TermId Of(const Additive& fold, TermId robot);
+  void OneOrTwo(const std::function<TermId(TermId)>& is_so, TermId first, TermId another);
+  void Signs(const Additive& sum);
+  void Changes(const Additive& a, const Additive& b);
+  void Differences(const Additive& a, const Additive& b);
   TermId MakeArray(ExprId id, const lang::Expr& e);
   TermId Filled(TermId whole, TypeId type, TermId value);
   TermId ReadVariable(size_t variable);
@@ -203,10 +215,13 @@ class Executor {
   std::vector<TermId> conditions_;  // of short-circuit operators around the expression in hand
   std::vector<TermId> quantified_;  // variables of quantifiers around it
   bool used_robot_ = false;
-  std::map<ExprId, TermId> fold_robots_;  // the variable of a fold
+  std::vector<TermId> fold_robots_;  // the variable of a fold, by how many are around it
+  size_t fold_depth_ = 0;
   std::map<std::tuple<FoldKind, TermId, std::vector<TermId>>, TermId>
       folded_;  // by body and what is free in it
   std::vector<TermId> folds_;
+  std::map<ExprId, std::vector<Additive>> additive_;  // by fold: at the moments that were looked at
+  std::set<std::pair<TermId, TermId>> compared_;
   std::unordered_set<expr::SymbolId> fold_functions_;
   std::vector<DefinednessCheck> specification_checks_;
 };

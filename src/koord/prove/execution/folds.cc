@@ -29,9 +29,9 @@ TermId Executor::Fold(ExprId id, const lang::Expr& e) {
     }
     return Folded(kind, values);
   }
-  // One variable for each fold, so that the same body is the same term.
-  TermId& robot = fold_robots_[id];
-  if (!robot.valid()) robot = arena_.FreshBound(model_.bindings[binding].name, arena_.Int());
+  // One variable for all folds of a depth, so that the same body is the same term wherever it is written.
+  if (fold_depth_ == fold_robots_.size()) fold_robots_.push_back(arena_.FreshBound("robot", arena_.Int()));
+  const TermId robot = fold_robots_[fold_depth_];
   // What is free around the fold: variables of quantifiers, and those of summaries.
   std::vector<TermId> around = quantified_;
   for (const auto& [_, value] : frame_.bindings) {
@@ -42,13 +42,113 @@ TermId Executor::Fold(ExprId id, const lang::Expr& e) {
   frame_.bindings[binding] = robot;
   quantified_.push_back(robot);
   conditions_.push_back(vocabulary_.IsRobot(robot));
+  ++fold_depth_;
   const TermId body = As(Eval(e.args[0]), sort);
+  --fold_depth_;
   conditions_.pop_back();
   quantified_.pop_back();
   std::unordered_set<TermId> occurring;
-  expr::VisitPostorder(arena_, body, occurring, [](TermId) {});
-  std::erase_if(around, [&](TermId t) { return !occurring.contains(t); });
-  return Defined(kind, robot, body, around);
+  std::unordered_set<TermId> bound{robot};  // by quantifiers in the body: their variables are not free in it
+  expr::VisitPostorder(arena_, body, occurring, [&](TermId t) {
+    if (arena_.op(t) != expr::Op::kForall && arena_.op(t) != expr::Op::kExists) return;
+    const auto args = arena_.args(t);
+    bound.insert(args.begin(), args.end() - 1);
+  });
+  std::erase_if(around, [&](TermId t) { return bound.contains(t) || !occurring.contains(t); });
+  const TermId value = Defined(kind, robot, body, around);
+  if (around.empty() && (kind == FoldKind::kCount || kind == FoldKind::kSum))
+    Compare(kind, id, {robot, body, value});
+  return value;
+}
+
+// How the numbers of one fold at different moments differ, by who changed: finite sums change by what their parts do.
+void Executor::Compare(FoldKind kind, ExprId id, const Additive& now) {
+  if (arena_.sort(arena_.sort_of(now.value)).kind == expr::SortKind::kRecord) return;
+  constexpr size_t kMoments = 6;
+  std::vector<Additive>& others = additive_[id];
+  if (others.size() >= kMoments || std::ranges::find(others, now.value, &Additive::value) != others.end())
+    return;
+  if (kind == FoldKind::kSum) Signs(now);
+  for (const Additive& before : others) {
+    if (!compared_.emplace(std::min(before.value, now.value), std::max(before.value, now.value)).second)
+      continue;
+    if (kind == FoldKind::kCount)
+      Changes(before, now);
+    else
+      Differences(before, now);
+  }
+  others.push_back(now);
+}
+
+TermId Executor::SomeRobot(const char* name) {
+  const expr::SymbolId symbol = arena_.Fresh(name, {}, arena_.Int());
+  fold_functions_.insert(symbol);
+  return arena_.Variable(symbol);
+}
+
+TermId Executor::Of(const Additive& fold, TermId robot) {
+  return Substitute(arena_, fold.body, expr::Substitution{{fold.robot, robot}});
+}
+
+// A sum is positive (negative) only if a part is.
+void Executor::Signs(const Additive& sum) {
+  const TermId zero = arena_.Number(arena_.sort_of(sum.value), expr::Rational(0));
+  const TermId plus = SomeRobot("positive");
+  const TermId minus = SomeRobot("negative");
+  folds_.push_back(arena_.Or(arena_.Le(sum.value, zero),
+                             arena_.And(vocabulary_.IsRobot(plus), arena_.Lt(zero, Of(sum, plus)))));
+  folds_.push_back(arena_.Or(arena_.Le(zero, sum.value),
+                             arena_.And(vocabulary_.IsRobot(minus), arena_.Lt(Of(sum, minus), zero))));
+}
+
+// If anybody is so, the first is; and who is so is the first of them, or there is another one.
+void Executor::OneOrTwo(const std::function<TermId(TermId)>& is_so, TermId first, TermId another) {
+  const TermId robot = fold_robots_[0];
+  folds_.push_back(arena_.Forall(
+      {robot}, arena_.Or(arena_.Not(is_so(robot)),
+                         arena_.And(is_so(first), arena_.Or(arena_.Eq(robot, first), another)))));
+}
+
+// Of two counts: it grows only if a robot joins, by one if a second one does not, and as a whole if none leaves; and the
+// other way round.
+void Executor::Changes(const Additive& a, const Additive& b) {
+  for (const auto& [from, to] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+    const TermId one = arena_.IntNumber(1);
+    const TermId first = SomeRobot("joins");
+    const TermId second = SomeRobot("joins too");
+    const TermId leaver = SomeRobot("leaves");
+    const auto joins = [&](TermId r) {
+      return arena_.And({vocabulary_.IsRobot(r), arena_.Not(Of(*from, r)), Of(*to, r)});
+    };
+    const TermId leaves =
+        arena_.And({vocabulary_.IsRobot(leaver), Of(*from, leaver), arena_.Not(Of(*to, leaver))});
+    const TermId longer = arena_.Add(from->value, one);
+    const TermId another = arena_.And(joins(second), arena_.Not(arena_.Eq(first, second)));
+    OneOrTwo(joins, first, another);
+    folds_.push_back(arena_.Or(arena_.Le(to->value, from->value), joins(first)));
+    folds_.push_back(arena_.Or(arena_.Le(to->value, longer), another));
+    folds_.push_back(arena_.Or({arena_.Not(joins(first)), arena_.Le(longer, to->value), leaves}));
+  }
+}
+
+// Of two sums: they differ only if a part does, by what it differs if no second one does, and as all parts do.
+void Executor::Differences(const Additive& a, const Additive& b) {
+  const TermId first = SomeRobot("differs");
+  const TermId second = SomeRobot("differs too");
+  const auto differs = [&](TermId r) {
+    return arena_.And(vocabulary_.IsRobot(r), arena_.Not(arena_.Eq(Of(a, r), Of(b, r))));
+  };
+  const TermId another = arena_.And(differs(second), arena_.Not(arena_.Eq(first, second)));
+  OneOrTwo(differs, first, another);
+  folds_.push_back(arena_.Or(arena_.Eq(a.value, b.value), differs(first)));
+  folds_.push_back(
+      arena_.Or(arena_.Eq(arena_.Sub(b.value, a.value), arena_.Sub(Of(b, first), Of(a, first))), another));
+  for (const auto& [from, to] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+    const TermId grows = SomeRobot("grows");
+    folds_.push_back(
+        arena_.Or(arena_.Le(to->value, from->value),
+                  arena_.And(vocabulary_.IsRobot(grows), arena_.Lt(Of(*from, grows), Of(*to, grows)))));
+  }
 }
 
 TermId Executor::Folded(FoldKind kind, const std::vector<TermId>& values) {

@@ -191,7 +191,7 @@ Problem Problems::WithWitnesses(TermId refuted,
   std::vector<TermId> others;
   Problem problem = state(others);
   constexpr int kPasses = 2;
-  constexpr size_t kMostOthers = 8;
+  constexpr size_t kMostOthers = 16;
   // Of a number of robots, those who are counted are named by what is known of it.
   const bool unnamed = arena_.HasQuantifier(refuted) || executor_.MentionsFold(refuted);
   for (int pass = 0; pass < kPasses && unnamed && !options_.expand; ++pass) {
