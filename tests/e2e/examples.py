@@ -10,6 +10,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 # Mutants that take a minute each with sanitizers, and fail as the others of delivery do: for `./dev nightly`.
@@ -65,6 +66,24 @@ def main():
         status, report = prove(rondo, "examples/koord/mutex_naive.koord", "--robots", str(robots))
         wanted = 0 if robots == 1 else 1
         check(f"mutex_naive for {robots}", status == wanted, f"status {status}")
+
+    # Without the invariants that only say why, helpers are found; and those are enough.
+    for name, left_out in (("crossing", ("others", "sent")), ("consensus", ("same",)), ("warehouse", ("reserved",))):
+        text = (ROOT / f"examples/koord/{name}.koord").read_text()
+        for invariant in left_out:
+            text, gone = re.subn(rf"^invariant {invariant}:.*\n(?:    .*\n)*", "", text, flags=re.M)
+            check(name, gone == 1, f"has no invariant {invariant}")
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder) / f"{name}.koord"
+            program.write_text(text)
+            status, report = prove(rondo, "--helpers", str(program))
+            helpers = report.get("helpers", {})
+            check(f"helpers of {name}", status == 1 and helpers.get("found") and helpers["invariants"], f"status {status}: {helpers}")
+            program.write_text(text + "\n" + "\n".join(helpers.get("invariants", [])) + "\n")
+            status, report = prove(rondo, str(program))
+            check(f"{name} with its helpers", status == 0 and verdicts(report) == {"proved"}, f"status {status}")
+    status, report = prove(rondo, "--helpers", "examples/koord/mutex_naive.koord")
+    check("helpers of what is refuted", status == 1 and report["helpers"]["found"] is False, f"{report.get('helpers')}")
 
     for path in sorted((ROOT / "tests/mutants").glob("*.koord")):
         if path.stem in SLOW and "RONDO_CASES" not in os.environ:
