@@ -120,6 +120,11 @@ ExitStatus Run(const Options& options) {
     report = koord::Prove(model, prove, session.diagnostics);
   }
   if (report.rows.empty()) return finish_early(ExitStatus::kRejected);
+  for (const koord::ResponseDef* def : model.responses) {
+    session.diagnostics
+        .Report(diag::Kind::kKoordNotChecked, def->span, fmt::format("proofs say nothing of `{}`", def->name))
+        .Help("`rondo explore` and `rondo simulate` check it");
+  }
   std::vector<runs::Reached> reached;
   {
     ProgressLine line;

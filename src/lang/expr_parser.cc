@@ -139,29 +139,49 @@ ExprId ExprParser::ParseQuantifier() {
   const bool fold = AtFold();
   const Token& word = Take();
   const std::string text(word.text == "all" ? "forall" : word.text == "any" ? "exists" : word.text);
-  Expr quantifier{fold ? ExprKind::kFold : ExprKind::kQuantifier, word.span, text, {}, {}};
-  std::vector<ExprId> ranges;
+  return ParseBinders(word.span, fold ? ExprKind::kFold : ExprKind::kQuantifier, text);
+}
+
+// Behind a range, the other variables are those of a quantifier inside: the range says where that one is asked.
+ExprId ExprParser::ParseBinders(Span start, ExprKind kind, const std::string& text) {
+  Depth depth(*this);
+  if (depth.TooDeep()) return Fail(start);
+  Expr quantifier{kind, start, text, {}, {}};
+  ExprId range;
   do {
     Binder binder;
-    if (!ParseBinder(binder, ranges)) return Fail(word.span);
-    if (fold && !ranges.empty()) {
-      diagnostics_.Report(Kind::kSyntaxUnexpected, binder.spans[0],
-                          fmt::format("`{}` goes over robots, not over numbers", text));
-      failed_ = true;
-      return Fail(word.span);
-    }
+    if (!ParseBinder(binder, range)) return Fail(start);
     quantifier.binders.push_back(std::move(binder));
-  } while (Accept(","));
-  if (!Accept(".") && !Expect(":", "the variables of a quantifier")) return Fail(word.span);
-  AllowLineBreak();
-  ExprId body = ParseExpr();
-  for (auto range = ranges.rbegin(); range != ranges.rend(); ++range) {
-    const diag::Span span = pool_[*range].span.To(pool_[body].span);
-    body = pool_.Add({ExprKind::kBinary, span, text == "forall" ? "implies" : "and", {*range, body}, {}});
+  } while (!range.valid() && Accept(","));
+  if (kind == ExprKind::kFold && range.valid()) {
+    diagnostics_.Report(Kind::kSyntaxUnexpected, quantifier.binders.back().spans[0],
+                        fmt::format("`{}` goes over robots, not over numbers", text));
+    failed_ = true;
+    return Fail(start);
+  }
+  ExprId body;
+  if (range.valid() && Accept(",")) {
+    body = ParseBinders(Peek().span, kind, text);
+  } else {
+    if (!Accept(".") && !Expect(":", "the variables of a quantifier")) return Fail(start);
+    AllowLineBreak();
+    body = ParseExpr();
+  }
+  if (range.valid()) {
+    const diag::Span span = pool_[range].span.To(pool_[body].span);
+    body = pool_.Add({ExprKind::kBinary, span, text == "forall" ? "implies" : "and", {range, body}, {}});
   }
   quantifier.args = {body};
   quantifier.span = quantifier.span.To(pool_[body].span);
   return pool_.Add(std::move(quantifier));
+}
+
+bool ExprParser::Mentions(ExprId id, const std::vector<std::string>& names) const {
+  const Expr& e = pool_[id];
+  if (e.kind == ExprKind::kName && std::ranges::find(names, e.text) != names.end()) return true;
+  return std::ranges::any_of(e.args, [&](ExprId arg) { return Mentions(arg, names); }) ||
+         std::ranges::any_of(e.binders,
+                             [&](const Binder& b) { return b.domain.valid() && Mentions(b.domain, names); });
 }
 
 // `c in range(n)` is c in int with 0 <= c and c < n.
@@ -176,6 +196,15 @@ ExprId ExprParser::ParseRange(const std::vector<std::string>& names) {
                         "`range` has an end, or a start and an end");
     return Fail(span);
   }
+  for (const ExprId limit : limits) {
+    if (!Mentions(limit, names)) continue;
+    failed_ = true;
+    diagnostics_
+        .Report(Kind::kSyntaxUnexpected, pool_[limit].span,
+                "the range of a variable cannot depend on the variable")
+        .Help("give the variable another name");
+    return Fail(span);
+  }
   const ExprId from = limits.size() == 2 ? limits[0] : pool_.Add({ExprKind::kInt, span, "0", {}, {}});
   ExprId all;
   for (const std::string& name : names) {
@@ -187,7 +216,7 @@ ExprId ExprParser::ParseRange(const std::vector<std::string>& names) {
   return all;
 }
 
-bool ExprParser::ParseBinder(Binder& binder, std::vector<ExprId>& ranges) {
+bool ExprParser::ParseBinder(Binder& binder, ExprId& range) {
   do {
     const Span span = Peek().span;
     std::string name = ExpectName("the name of a variable");
@@ -202,7 +231,7 @@ bool ExprParser::ParseBinder(Binder& binder, std::vector<ExprId>& ranges) {
   if (!Expect("in", "the variables of a quantifier")) return false;
   if (HasFolds() && At("range") && Peek(1).text == "(") {
     binder.domain = pool_.Add({ExprKind::kName, Peek().span, "int", {}, {}});
-    ranges.push_back(ParseRange(binder.names));
+    range = ParseRange(binder.names);
     return !failed_;
   }
   static constexpr std::array<std::string_view, 8> kTypeWords = {"List", "Queue", "Map", "Set",
@@ -345,16 +374,10 @@ ExprId ExprParser::ParsePostfix() {
 // `l[a:b]` calls a function that nobody else can name; without b, up to the end.
 ExprId ExprParser::ParseSlice(ExprId list, ExprId from) {
   const Span colon = Take().span;
-  ExprId to;
-  if (At("]")) {
-    const ExprId len = pool_.Add({ExprKind::kName, colon, "len", {}, {}});
-    to = pool_.Add({ExprKind::kCall, colon, {}, {len, list}, {}});
-  } else {
-    to = ParseExpr();
-  }
+  std::vector<ExprId> args{pool_.Add({ExprKind::kName, colon, std::string(kSlice), {}, {}}), list, from};
+  if (!At("]")) args.push_back(ParseExpr());
   if (!Expect("]", "a slice")) return Fail(pool_[list].span);
-  const ExprId slice = pool_.Add({ExprKind::kName, colon, std::string(kSlice), {}, {}});
-  return pool_.Add({ExprKind::kCall, pool_[list].span.To(PreviousSpan()), {}, {slice, list, from, to}, {}});
+  return pool_.Add({ExprKind::kCall, pool_[list].span.To(PreviousSpan()), {}, std::move(args), {}});
 }
 
 std::vector<ExprId> ExprParser::ParseItems(std::string_view close) {

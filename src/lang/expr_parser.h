@@ -90,7 +90,9 @@ class ExprParser {
   ExprId ParseAny();
   ExprId ParseSlice(ExprId list, ExprId from);
   std::vector<ExprId> ParseItems(std::string_view close);
-  bool ParseBinder(Binder& binder, std::vector<ExprId>& ranges);
+  ExprId ParseBinders(diag::Span start, ExprKind kind, const std::string& text);
+  bool ParseBinder(Binder& binder, ExprId& range);
+  bool Mentions(ExprId id, const std::vector<std::string>& names) const;
   ExprId Binary(std::string text, ExprId a, ExprId b);
 
   int depth_ = 0;

@@ -101,7 +101,8 @@ class Printer {
         return fmt::format("{}[{}]", Base(e.args[0]), Print(e.args[1], 0));
       case ExprKind::kCall:
         if (pool_[e.args[0]].text == kSlice)
-          return fmt::format("{}[{}:{}]", Base(e.args[1]), Print(e.args[2], 0), Print(e.args[3], 0));
+          return fmt::format("{}[{}:{}]", Base(e.args[1]), IsZero(e.args[2]) ? "" : Print(e.args[2], 0),
+                             e.args.size() > 3 ? Print(e.args[3], 0) : "");
         return fmt::format("{}({})", Base(e.args[0]), Items(e, 1));
       case ExprKind::kUnary:
         return fmt::format("{}{}", e.text == "not" ? "not " : "-", Print(e.args[0], level));
@@ -164,6 +165,14 @@ class Printer {
   const ExprPool& pool_;
 };
 
+bool Mentions(const ExprPool& pool, ExprId id, const std::vector<std::string>& names) {
+  const Expr& e = pool[id];
+  if (e.kind == ExprKind::kName && std::ranges::find(names, e.text) != names.end()) return true;
+  return std::ranges::any_of(e.args, [&](ExprId arg) { return Mentions(pool, arg, names); }) ||
+         std::ranges::any_of(
+             e.binders, [&](const Binder& b) { return b.domain.valid() && Mentions(pool, b.domain, names); });
+}
+
 }  // namespace
 
 std::optional<RangeDomain> RangeOf(const ExprPool& pool, const Expr& quantifier) {
@@ -196,7 +205,9 @@ std::optional<RangeDomain> RangeOf(const ExprPool& pool, const Expr& quantifier)
     if (limit.valid() && PrintExpr(pool, limit) != PrintExpr(pool, other)) return std::nullopt;
     limit = other;
   }
-  return range;
+  // A variable in its own limits is bound by the quantifier, and none of a range.
+  const bool own = Mentions(pool, range.from, binder.names) || Mentions(pool, range.to, binder.names);
+  return own ? std::nullopt : std::optional(range);
 }
 
 std::string PrintExpr(const ExprPool& pool, ExprId expr) { return Printer(pool).Print(expr, 0); }

@@ -45,7 +45,8 @@ enum class ExprKind : uint8_t {
   kAny,          // `any text in ...`; args: a list, or the first and the last whole number
 };
 
-/// Is the name of the function that `l[a:b]` calls, with the arguments l, a and b; no program can write it.
+/// Is the name of the function that `l[a:b]` calls, with the arguments l, a and b, or l and a for
+/// `l[a:]`; no program can write it.
 inline constexpr std::string_view kSlice = "[:]";
 
 /// Is a group of bound variables, `i, j in ID`: their domain is a type if `type` has a name, else the

@@ -10,6 +10,7 @@
 #include "koord/check/spec_labels.h"
 #include "koord/semantics/story.h"
 #include "koord/semantics/system.h"
+#include "koord/semantics/timed_system.h"
 
 namespace rondo::runs {
 namespace {
@@ -23,6 +24,29 @@ using koord::semantics::Trouble;
 size_t RoundsOf(const std::vector<koord::semantics::Step>& run) {
   return static_cast<size_t>(std::count_if(run.begin() + (run.empty() ? 0 : 1), run.end(),
                                            [](const auto& step) { return !step.environment; }));
+}
+
+// Somebody waits longer than the specification allows.
+void ReportLate(Team& team, System& system, const std::vector<std::vector<koord::semantics::Word>>& path,
+                size_t number, Explored& explored, diag::Diagnostics& diagnostics) {
+  const auto& response = team.responses()[number];
+  const auto run = system.Explain(path, {});
+  koord::semantics::Responses responses(team);
+  std::vector<koord::semantics::Word> waits(responses.words());
+  size_t robot = 0;
+  for (size_t i = 0; i < run.size(); ++i) {
+    if (i == 0 || run[i].environment || !team.has_sensors()) responses.Observe(run[i].state, waits, &robot);
+  }
+  explored.broken = true;
+  explored.property = "response " + response.name;
+  explored.run = koord::semantics::RunToJson(team, run);
+  auto& report = diagnostics.Report(
+      Kind::kKoordViolated, response.span,
+      fmt::format("after {}, the team violates `{}`", base::Counted(RoundsOf(run), "round"), response.name));
+  report.Under(
+      fmt::format("robot {} waits for more than {}", robot, base::Counted(response.rounds, "round")));
+  report.Note(
+      fmt::format("with {}:\n{}", base::Counted(team.robots(), "robot"), koord::semantics::Tell(team, run)));
 }
 
 void ReportBroken(Team& team, System& system, const std::vector<std::vector<koord::semantics::Word>>& path,
@@ -233,13 +257,23 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
   const auto team = Team::Make(model, {robots, options.params, options.choices, {}}, diagnostics);
   if (!team) return explored;
   const size_t before = diagnostics.errors();
-  System system(*team, {options.reduce, options.symmetry, options.only}, diagnostics);
+  // Who waits for how long is told by robots' numbers.
+  const bool symmetry = options.symmetry && team->responses().empty();
+  System system(*team, {options.reduce, symmetry, options.only}, diagnostics);
+  koord::semantics::TimedSystem timed(system, *team);
   explored.symmetric = system.symmetric();
   ReportUnchecked(*team, explored, diagnostics);
   if (diagnostics.errors() != before || !ParametersFit(*team, diagnostics)) return explored;
   explored.unusable = false;
   if (options.walks > 0) {
     Walk(*team, system, options, explored, diagnostics);
+    for (const auto& response : team->responses()) {
+      explored.unchecked.push_back(response.name);
+      diagnostics
+          .Report(Kind::kKoordNotChecked, response.span,
+                  fmt::format("runs are not checked against `{}`", response.name))
+          .Under("walks do not count rounds");
+    }
   } else {
     explore::SearchOptions search;
     if (options.rounds) search.depth = *options.rounds * system.phases();
@@ -248,11 +282,16 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
     search.deadlocks = options.deadlocks;
     search.progress = options.progress;
     search.stop = options.stop;
-    explored.search = explore::Search(system, search);
+    const bool waits = !team->responses().empty() && !options.only;
+    explored.search = waits ? explore::Search(timed, search) : explore::Search(system, search);
+    if (waits) explored.search.path = timed.OfSystem(explored.search.path);
     explored.rounds = explored.search.depth / system.phases();
   }
   const explore::SearchResult& search = explored.search;
-  if (search.ending == Ending::kBroken && search.broken.property >= 0)
+  const auto late = timed.ResponseOf(search.broken.property);
+  if (search.ending == Ending::kBroken && late)
+    ReportLate(*team, system, search.path, *late, explored, diagnostics);
+  else if (search.ending == Ending::kBroken && search.broken.property >= 0)
     ReportBroken(*team, system, search.path, search.broken, explored, diagnostics);
   if (search.ending == Ending::kDeadlock) ReportDeadlock(*team, system, explored, diagnostics);
   if (options.walks == 0 && search.initial == 0 && search.ending == Ending::kComplete)

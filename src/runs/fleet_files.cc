@@ -130,6 +130,11 @@ sim::BodyFactory FleetFiles::Model(const sim::FleetRobot& robot) {
       number.any_dimension = true;
       given.emplace(name, std::pair(std::move(number), robot.span));
     } else if (std::ranges::any_of(common, [&](const auto& p) { return p.name == name; })) {
+      const double least = name == "dwell" ? 0 : 1e-6;
+      if (!(value >= least && value <= 1e6)) {
+        wrong(fmt::format("`{}` must lie between {:g} and 1000000", name, least));
+        return {};
+      }
       of_all.emplace(name, value);
     } else {
       wrong(fmt::format("`{}` has no parameter `{}`", robot.model, name));

@@ -28,7 +28,6 @@ class Search {
     prove_.cross_check = nullptr;
     // No name of the program's own.
     while ((request.program + request.spec).find(prefix_) != std::string::npos) prefix_ += "_";
-    prove_.timeout = std::min(prove_.timeout, std::chrono::milliseconds(1000));
   }
 
   Helpers Run(const koord::Report& given) {
@@ -153,9 +152,11 @@ class Search {
       return true;
     }
     if (!Over())
-      why_ = comparable
-                 ? "no clause of the program's own predicates excludes the counterexample and is inductive"
-                 : "the counterexample has values that no run can have";
+      why_ =
+          comparable
+              ? "no clause of the program's own predicates excludes the counterexample, as far as values such as lists "
+                "can be looked at, and is inductive"
+              : "the counterexample has values that no run can have";
     return false;
   }
 
@@ -171,6 +172,7 @@ class Search {
     if (program.loaded == nullptr) return false;
     koord::ProveOptions options = prove_;
     options.quick = true;
+    options.timeout = std::min(options.timeout, std::chrono::milliseconds(1000));
     options.jobs = 1;
     options.progress = nullptr;
     diag::Diagnostics ignored;

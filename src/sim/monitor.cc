@@ -14,7 +14,11 @@ using koord::semantics::PromiseCode;
 using koord::semantics::Word;
 
 Monitor::Monitor(koord::semantics::Team& team, diag::Diagnostics& diagnostics, Report report)
-    : team_(team), diagnostics_(diagnostics), report_(std::move(report)) {}
+    : team_(team),
+      diagnostics_(diagnostics),
+      report_(std::move(report)),
+      responses_(team),
+      waits_(responses_.words()) {}
 
 void Monitor::Violated(double time, const std::string& what, int robot, diag::Span span, Kind kind) {
   const auto it = std::find_if(violations_.begin(), violations_.end(),
@@ -55,6 +59,16 @@ void Monitor::Settled(double time, std::span<Word> state, bool between_rounds) {
   for (const FormulaCode& f : team_.invariants()) {
     if (!f.at_rounds || between_rounds) Formula(time, f, "invariant", Kind::kKoordViolated);
   }
+}
+
+void Monitor::Between(double time, std::span<Word> state) {
+  if (responses_.empty()) return;
+  size_t robot = 0;
+  const int late = responses_.Observe(state, waits_, &robot);
+  if (late < 0) return;
+  const koord::semantics::ResponseCode& response = team_.responses()[static_cast<size_t>(late)];
+  Violated(time, fmt::format("response `{}`", response.name), static_cast<int>(robot), response.span,
+           Kind::kKoordViolated);
 }
 
 void Monitor::During(double time, std::span<Word> state, std::span<const Word> settled, bool between_rounds) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "koord/semantics/team.h"
+#include "koord/semantics/responses.h"
 #include "sim/simulation.h"
 
 /// Watches simulations.
@@ -25,6 +25,8 @@ class Monitor {
   /// Checks the invariants at the end of a program transition; `time` in seconds. Those that have to hold between rounds only
   /// wait for the end of the round.
   void Settled(double time, std::span<koord::semantics::Word> state, bool between_rounds = false);
+  /// Takes in a state between rounds, the first one included: does everything follow as soon as it has to?
+  void Between(double time, std::span<koord::semantics::Word> state);
   /// Checks a moment of the environment's turn that began with `settled`: controller assumptions and
   /// invariants.
   /// @param between_rounds  it is the last moment of the round.
@@ -45,6 +47,8 @@ class Monitor {
   koord::semantics::Team& team_;
   diag::Diagnostics& diagnostics_;
   Report report_;
+  koord::semantics::Responses responses_;
+  std::vector<koord::semantics::Word> waits_;
   std::vector<Violation> violations_;
   std::set<std::string> now_;  // violated at the last check of the same kind: counted once
 };

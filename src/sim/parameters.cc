@@ -18,6 +18,12 @@ void ReadParameters(const koord::Model& model, const Fleet& fleet, koord::semant
                          fmt::format("the program has no parameter `{}`", name));
       continue;
     }
+    if (found->initial.valid()) {
+      diagnostics.Report(diag::Kind::kFleetValue, given.span, fmt::format("`{}` has a value already", name))
+          .At(found->span, "declared here")
+          .Help("proofs are about this value: leave it out here, or declare the parameter without one");
+      continue;
+    }
     const auto words = koord::semantics::FromJson(model.types, heap, found->type, given.value);
     if (words) {
       options.params[static_cast<size_t>(found - model.variables.begin())] = *words;

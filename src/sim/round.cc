@@ -44,6 +44,7 @@ void Run::Round(uint64_t k) {
   if (recorder_.on()) recorder_.Round(t, {{"round", k}, {"events", chosen}});
   monitor_->Settled(t, state_);
   Environment(t);
+  monitor_->Between(t + fleet_.delta, state_);
   After(t + fleet_.delta);
   // Sensors that see noise may see something new; the others only if something moves, or `reached` is still to come.
   idle = idle && AtRest() && (!periods_.scans || fleet_.lidar.noise == 0);

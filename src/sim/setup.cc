@@ -93,6 +93,14 @@ bool Run::MakeTeam() {
                 fmt::format("runs are not checked against `{}`", part.name))
         .Under(part.reason);
   }
+  for (const auto& response : team_->responses()) {
+    if (options_.network == nullptr) break;
+    report_.unchecked.push_back(response.name);
+    diagnostics_
+        .Report(Kind::kKoordNotChecked, response.span,
+                fmt::format("runs are not checked against `{}`", response.name))
+        .Under("over a network, rounds last as long as they take");
+  }
   for (const auto& promise : team_->promises()) {
     if (!promise.at_end || options_.network == nullptr) continue;
     report_.unchecked.push_back(promise.name);
@@ -169,6 +177,12 @@ bool Run::BeforeInit() {
                           fmt::format("the program has no variable `{}` that can start with a value", name));
       continue;
     }
+    if (model_.variables[v].initial.valid()) {
+      diagnostics_.Report(Kind::kFleetValue, given.span, fmt::format("`{}` has a value already", name))
+          .At(model_.variables[v].span, "declared here")
+          .Help("proofs are about this value: leave it out here, or declare the variable without one");
+      continue;
+    }
     if (model_.variables[v].PerRobot() && IsForEach(given, v)) {
       ForEach(name, given, v);
       continue;
@@ -195,6 +209,7 @@ bool Run::Start() {
   });
   Record();
   monitor_->Initially(state_);
+  monitor_->Between(0, state_);
   Observe(0);
   return true;
 }

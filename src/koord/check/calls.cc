@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "koord/check/checker.h"
+#include "koord/check/targets.h"
 #include "lang/suggest.h"
 
 namespace rondo::koord {
@@ -205,6 +206,14 @@ TypeId Checker::CallMethod(ExprId id, const lang::Expr& e) {
   }
   const Builtin builtin = method->second;
   Set(id, RefKind::kBuiltin, static_cast<size_t>(builtin));
+  if (WritesList(builtin) && id != statement_call_) {
+    diagnostics_
+        .Report(Kind::kKoordNotCallable, e.span,
+                fmt::format("`{}` changes its list, and has no value", callee.text))
+        .Help(builtin == Builtin::kPop
+                  ? "take `q.front()` or `l[i]` first, and write `pop` in a line of its own"
+                  : "write it in a line of its own");
+  }
   const size_t most = builtin == Builtin::kClear || builtin == Builtin::kFront ? 0
                       : builtin == Builtin::kInsert                            ? 2
                                                                                : 1;
@@ -218,8 +227,8 @@ TypeId Checker::CallMethod(ExprId id, const lang::Expr& e) {
     // Elsewhere, it is the last item of a list that goes.
     diagnostics_
         .Report(Kind::kKoordNotCallable, e.span,
-                "`pop()` takes away the first item of a `Queue`, and this is a `List`")
-        .Help("`l.pop(0)` takes away the first item, `l.pop(len(l) - 1)` the last");
+                "`pop()` takes away the first item of what is declared as a `Queue`")
+        .Help("of any list, `l.pop(0)` takes away the first item, `l.pop(len(l) - 1)` the last");
   }
   const bool indexed = builtin == Builtin::kInsert || builtin == Builtin::kPop;
   if (indexed && e.args.size() > 1) NeedType(e.args[1], types.integer(), "an index");
@@ -233,6 +242,9 @@ TypeId Checker::CallMethod(ExprId id, const lang::Expr& e) {
 // Is it a variable that is declared as a `Queue`? Queues and lists are one type.
 bool Checker::IsQueue(ExprId list) const {
   const Ref ref = model_.RefOf(list);
+  if (ref.kind == RefKind::kBinding) return local_queues_.contains(ref.index);
+  const bool item = exprs_[list].kind == ExprKind::kIndex && ref.kind == RefKind::kNone;
+  if (item) return IsQueue(exprs_[list].args[0]);
   return (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell) && queues_.contains(ref.index);
 }
 
@@ -345,7 +357,7 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
         return Mismatch(exprs_[e.args[1]].span,
                         fmt::format("only lists have slices, not a `{}`", types.Name(list)));
       NeedType(e.args[2], types.integer(), "the start of a slice");
-      NeedType(e.args[3], types.integer(), "the end of a slice");
+      if (e.args.size() > 3) NeedType(e.args[3], types.integer(), "the end of a slice");
       return list;
     }
     case Builtin::kRemove:

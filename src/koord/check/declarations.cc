@@ -96,6 +96,7 @@ void Checker::CheckOrder() {
     int operator()(const AssumeDef&) const { return -1; }
     int operator()(const SummaryDef&) const { return -1; }
     int operator()(const InvariantDef&) const { return -1; }
+    int operator()(const ResponseDef&) const { return -1; }
     int operator()(const ExploreDef&) const { return -1; }
     int operator()(const PlatformDef&) const { return -1; }
   };
@@ -193,6 +194,9 @@ void Checker::DeclareAll() {
     if (const auto* def = std::get_if<SummaryDef>(&item)) model_.summaries.push_back(def);
     if (const auto* def = std::get_if<ExploreDef>(&item)) explorations_.push_back(def);
     if (const auto* def = std::get_if<PlatformDef>(&item)) model_.platforms.push_back(def);
+    if (const auto* def = std::get_if<ResponseDef>(&item)) {
+      if (Claim("response " + def->name, def->span)) model_.responses.push_back(def);
+    }
     if (const auto* def = std::get_if<InvariantDef>(&item)) {
       if (def->name.empty() || Claim("invariant " + def->name, def->span)) model_.invariants.push_back(def);
     }

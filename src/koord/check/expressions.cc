@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "koord/check/checker.h"
+#include "lang/expr_printer.h"
 
 namespace rondo::koord {
 
@@ -369,6 +370,12 @@ TypeId Checker::Quantifier(ExprId id, const lang::Expr& e) {
   }
   const bool may_choose = std::exchange(may_choose_, false);
   NeedBool(e.args[0], fmt::format("the body of `{}`", e.text));
+  if (const auto range = lang::RangeOf(exprs_, e)) {
+    for (const ExprId limit : {range->from, range->to}) {
+      if (types.Is(model_.TypeOf(limit), TypeKind::kFloat))
+        Mismatch(exprs_[limit].span, "the limits of a range are ints, and this is a `float`");
+    }
+  }
   may_choose_ = may_choose;
   scope_.resize(depth);
   model_.domains[id] = std::move(domains);

@@ -146,6 +146,7 @@ struct Model {
   std::vector<const AssumeDef*> assumptions;
   std::vector<const SummaryDef*> summaries;
   std::vector<const InvariantDef*> invariants;
+  std::vector<const ResponseDef*> responses;
   std::vector<const PlatformDef*> platforms;
   Exploration exploration;
 

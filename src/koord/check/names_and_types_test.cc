@@ -98,7 +98,7 @@ TEST_F(Typing, AnIndexIsAnIntOfSomethingWithItems) {
 TEST_F(Typing, ItemsOfAListHaveOneType) {
   Accepts({"l = [1, 2]", "l = []", "l.append(n)", "l.remove(3)", "n = len(l)"});
   Rejects(Kind::kKoordTypeMismatch, {"l = [1, b]", "l.append(p)", "n.append(1)", "n = len(n)", "n = len(a)"});
-  Rejects(Kind::kKoordNotCallable, {"l.insert(1)"});
+  Rejects(Kind::kKoordNotCallable, {"l.drop(1)"});
 }
 
 TEST_F(Typing, LoopsRunOverListsAndRangesOfInts) {

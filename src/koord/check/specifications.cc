@@ -16,6 +16,10 @@ void Checker::Specifications() {
   for (const AssumeDef* def : model_.assumptions) Assume(*def);
   for (const SummaryDef* def : model_.summaries) Summary(*def);
   for (const InvariantDef* def : model_.invariants) Invariant(*def);
+  for (const ResponseDef* def : model_.responses) {
+    NeedBool(def->when, "what a response follows");
+    NeedBool(def->then, "a response");
+  }
   for (const ExploreDef* def : explorations_) {
     for (const ExploreEntry& entry : def->entries) Explore(entry);
   }

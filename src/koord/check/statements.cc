@@ -62,6 +62,7 @@ void Checker::Statement(const Stmt& stmt) {
     case StmtKind::kPass:
       return;
     case StmtKind::kCall:
+      statement_call_ = stmt.value;
       Expr(stmt.value);
       // l.remove(x) and l.append(x) write their list.
       if (model_.RefOf(stmt.value).kind == RefKind::kBuiltin) {

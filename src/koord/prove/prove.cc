@@ -350,6 +350,7 @@ class Prover {
     if (report_.contradiction || report_.interrupted) return;
     if (report_.AllProved()) {
       for (const size_t p : not_now_) reporter.Unrealisable(p);
+      reporter.Excluding();
       for (const auto& [action, core] : never_) reporter.NeverEnabled(action, core);
     }
     std::set<std::string> used;

@@ -117,6 +117,30 @@ void Reporter::Unrealisable(size_t p) {
   }
 }
 
+// Two promises that cannot be kept together, although both can be due: from there on, proofs are about nothing.
+void Reporter::Excluding() {
+  const std::vector<Theory::Promise> promises = problems_.promises();
+  const solve::Budget budget{std::chrono::milliseconds(1000), false};
+  for (size_t a = 0; a < promises.size(); ++a) {
+    for (size_t b = a + 1; b < promises.size(); ++b) {
+      if (promises[a].def->module != promises[b].def->module) continue;
+      const auto answer = [&](bool kept) {
+        return options_.solver->Check(problems_.BothPromises(a, b, kept).query, budget, options_.stop);
+      };
+      if (!std::holds_alternative<solve::Unsat>(answer(true)) ||
+          std::holds_alternative<solve::Unsat>(answer(false)))
+        continue;
+      diagnostics_
+          .Report(Kind::kKoordUnrealisable, promises[a].def->span,
+                  fmt::format("`{}` and `{}` exclude each other", promises[a].name, promises[b].name))
+          .Under("both can be due at once, and then no controller keeps both")
+          .At(promises[b].def->span, "the other one")
+          .Note("a proof says nothing of what comes after such a state")
+          .Help("weaken a promise, or add an invariant that excludes that both conditions are true");
+    }
+  }
+}
+
 std::string Reporter::Scope() const {
   return options_.robots ? fmt::format("for N = {}", *options_.robots) : "for every N";
 }

@@ -31,6 +31,8 @@ class Reporter {
   /// robots shows that with every quantifier in place; else reports nothing. Asks the solver, for a second at
   /// most each time.
   void Unrealisable(size_t p);
+  /// Warns of promises that exclude each other.
+  void Excluding();
   /// Reports each invariant that could not be proved, with its witness or what is known instead.
   void Failures();
   /// Decides the verdicts of the rows that did not fail: proved, unless a proof rests on what is not proved.

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "koord/semantics/machine/values.h"
+#include "koord/semantics/responses.h"
 
 namespace rondo::koord::semantics {
 
@@ -183,6 +184,9 @@ std::string Replay(Team& team, const json& run, const std::string& property) {
   System system(team, {true, false, {}}, ignored);
   std::vector<Word> here;
   std::vector<Word> prefix;
+  Responses responses(team);
+  std::vector<Word> waits(responses.words());
+  int late = -1;
   for (size_t i = 0; i < run.size(); ++i) {
     const json& step = run[i];
     if (!step.is_object() || !step.contains("state") || !step.contains("kind"))
@@ -233,6 +237,13 @@ std::string Replay(Team& team, const json& run, const std::string& property) {
       here = next;
     else
       here = prefix;
+    if (i == 0 || step["kind"] == "environment" || (step["kind"] == "program" && !team.has_sensors()))
+      late = responses.Observe(here, waits);
+  }
+  if (property.starts_with("response ")) {
+    const bool named =
+        late >= 0 && "response " + team.responses()[static_cast<size_t>(late)].name == property;
+    return named ? "" : fmt::format("the run is possible, but it does not break `{}`", property);
   }
   if (!Breaks(team, system, here, property))
     return fmt::format("the run is possible, but it does not break `{}`", property);

@@ -260,6 +260,11 @@ void Team::Specification(Compiler& compiler) {
     add(invariants_, InvariantName(model_, i), model_.invariants[i]->span, model_.invariants[i]->body);
     if (invariants_.size() > before) invariants_.back().at_rounds = model_.invariants[i]->at_rounds;
   }
+  for (const ResponseDef* def : model_.responses) {
+    auto when = CompileFormula(compiler, def->name, def->span, def->when);
+    auto then = when ? CompileFormula(compiler, def->name, def->span, def->then) : std::nullopt;
+    if (then) responses_.push_back({def->name, def->span, std::move(*when), std::move(*then), def->rounds});
+  }
   for (const AssumeDef* def : model_.assumptions) {
     const std::string name = AssumptionName(model_, *def);
     switch (def->kind) {

@@ -40,6 +40,13 @@ struct PromiseCode {
   uint32_t always;
   bool at_end = false;  ///< Q holds when the round is over
 };
+/// Holds the code of a bounded response.
+struct ResponseCode {
+  std::string name;
+  diag::Span span;
+  FormulaCode when, then;  ///< of each robot
+  uint32_t rounds = 0;
+};
 /// Holds the code that sets a variable to its initial value.
 struct InitialCode {
   size_t variable;
@@ -97,6 +104,7 @@ class Team {
   const std::map<size_t, std::vector<Word>>& given_choices() const { return given_choices_; }
   const std::vector<FormulaCode>& invariants() const { return invariants_; }
   const std::vector<FormulaCode>& initially() const { return initially_; }
+  const std::vector<ResponseCode>& responses() const { return responses_; }
   const std::vector<FormulaCode>& facts() const { return facts_; }
   const std::vector<FormulaCode>& port_facts() const { return port_facts_; }
   const std::vector<PromiseCode>& promises() const { return promises_; }
@@ -162,6 +170,7 @@ class Team {
   std::map<size_t, std::vector<Word>> given_choices_;
   std::vector<FormulaCode> invariants_;
   std::vector<FormulaCode> initially_;
+  std::vector<ResponseCode> responses_;
   std::vector<FormulaCode> facts_;
   std::vector<FormulaCode> port_facts_;
   std::vector<PromiseCode> promises_;

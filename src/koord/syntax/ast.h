@@ -161,6 +161,14 @@ struct SummaryDef {
   std::string result;
   ExprId body;
 };
+/// Represents `response NAME: P within 5 rounds Q`: of each robot, Q holds between rounds at most so many rounds after P did.
+struct ResponseDef {
+  std::string name;
+  diag::Span span;
+  ExprId when;
+  uint32_t rounds = 0;
+  ExprId then;
+};
 /// Represents an invariant that is to be proved or checked.
 struct InvariantDef {
   std::string name;        ///< may be empty
@@ -202,9 +210,9 @@ struct PlatformDef {
   ExprId period;  ///< the length of a round, in seconds
 };
 
-using Item =
-    std::variant<AgentHeader, FunctionDef, AdtDef, EnumDef, ModuleDef, Section, InitDef, EventDef,
-                 FallbackDef, ParamDef, AssumeDef, SummaryDef, InvariantDef, ExploreDef, PlatformDef>;
+using Item = std::variant<AgentHeader, FunctionDef, AdtDef, EnumDef, ModuleDef, Section, InitDef, EventDef,
+                          FallbackDef, ParamDef, AssumeDef, SummaryDef, InvariantDef, ResponseDef, ExploreDef,
+                          PlatformDef>;
 
 /// Holds one file, or a program with the specification beside it: items in source order.
 struct Program {

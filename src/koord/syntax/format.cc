@@ -35,6 +35,7 @@ class Formatter {
   static bool IsSpecLine(const Item& item) {
     return std::holds_alternative<ParamDef>(item) || std::holds_alternative<AssumeDef>(item) ||
            std::holds_alternative<SummaryDef>(item) || std::holds_alternative<InvariantDef>(item) ||
+           std::holds_alternative<ResponseDef>(item) ||
            (std::holds_alternative<FunctionDef>(item) && !std::get<FunctionDef>(item).has_body);
   }
 
@@ -186,6 +187,10 @@ class Formatter {
               fmt::format("invariant{}{}:", item.name.empty() ? "" : " " + item.name,
                           item.at_rounds ? " at rounds" : ""),
               item.body);
+  }
+  void Print(const ResponseDef& item) {
+    Line(Whole(item.span, item.then), fmt::format("response {}: {} within {} rounds {}", item.name,
+                                                  Text(item.when), item.rounds, Text(item.then)));
   }
   void Print(const PlatformDef& item) {
     Line(Whole(item.span, item.period), fmt::format("platform {} = {} from \"{}\" every {}", item.module,

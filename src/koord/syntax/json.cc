@@ -94,6 +94,13 @@ class Writer {
     j["body"] = Ex(i.body);
     return j;
   }
+  json operator()(const ResponseDef& i) const {
+    json j = Named("response", i.name, i.span);
+    j["when"] = Ex(i.when);
+    j["rounds"] = i.rounds;
+    j["then"] = Ex(i.then);
+    return j;
+  }
   json operator()(const PlatformDef& i) const {
     json j = Named("platform", i.module, i.span);
     j["type"] = i.type;

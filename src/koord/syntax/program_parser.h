@@ -64,6 +64,7 @@ class Parser : public lang::ExprParser {
   void ParseAssume(diag::Span start);
   void ParseSummary(diag::Span start);
   void ParseInvariant(diag::Span start);
+  void ParseResponse(diag::Span start);
   void ParseExplore(diag::Span start);
   void ParsePlatform(diag::Span start);
   bool ParseExploreEntry(ExploreDef& def);

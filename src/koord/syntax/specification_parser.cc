@@ -26,6 +26,8 @@ bool Parser::ParseSpecItem() {
   } else if ((At("invariant") || At("SafetyProp")) &&
              (name_follows || next.text == ":" || next.text == "(" || next.text == "{")) {
     ParseInvariant(start);
+  } else if (At("response") && name_follows && Peek(2).text == ":") {
+    ParseResponse(start);
   } else if (At("explore") && next.text == ":" && Peek(2).kind == TokenKind::kNewline &&
              Peek(3).kind == TokenKind::kIndent && Peek(4).text != "pre" && Peek(4).text != "eff") {
     ParseExplore(start);
@@ -201,6 +203,31 @@ void Parser::ParseInvariant(Span start) {
     def.body = ParseSpecBody();
   }
   AddItem(std::move(def), start);
+  EndSpecItem();
+}
+
+// response name: e within n rounds e
+void Parser::ParseResponse(Span start) {
+  Take();
+  ResponseDef def;
+  def.span = Peek().span;
+  def.name = ExpectName("the name of the response");
+  Expect(":", "the name of the response");
+  if (!failed()) def.when = ParseSpecBody();
+  AcceptContinuation("within");
+  Expect("within", "the condition of a response");
+  constexpr size_t kMostDigits = 3;
+  constexpr uint32_t kMostRounds = 200;
+  const lang::Token number = Peek();
+  if (!failed() && AtKind(TokenKind::kInt) && number.text.size() <= kMostDigits) {
+    Take();
+    def.rounds = static_cast<uint32_t>(std::stoul(std::string(number.text)));
+  }
+  if (!failed() && (def.rounds < 1 || def.rounds > kMostRounds))
+    Unexpected(fmt::format("a number of rounds from 1 to {}", kMostRounds));
+  Expect("rounds", "the number");
+  if (!failed()) def.then = ParseSpecBody();
+  if (!failed()) AddItem(std::move(def), start);
   EndSpecItem();
 }
 

@@ -69,6 +69,7 @@ class Functions final : public koord::semantics::Host {
   const std::vector<std::unique_ptr<Body>>* bodies_ = nullptr;
   double path_clearance_;
   uint64_t plans_ = 0;
+  uint64_t failures_ = 0;  ///< of them
   std::vector<std::pair<size_t, std::string>> log_;
 };
 

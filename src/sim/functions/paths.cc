@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <bit>
 
+#include "base/mixed.h"
 #include "sim/functions/functions.h"
 
 namespace rondo::sim {
@@ -46,9 +48,16 @@ void Functions::PlanTo(size_t robot, const Point& target, const World& world, st
   request.goal = target;
   request.clearance = fleet_.clearance;
   request.flies = body.flies();
-  request.seed = seed_ * 1'000'003 + plans_++;
+  // The same question in the same place has the same answer, until there was none.
+  uint64_t seed = seed_ * 1'000'003 + robot;
+  for (const Point& p : {request.start, request.goal}) {
+    for (const double x : p) seed = base::Mixed(seed ^ std::bit_cast<uint64_t>(x + 0.0));
+  }
+  request.seed = seed + failures_;
+  ++plans_;
   // No way: an empty path, which programs test for.
   const auto path = Plan(fleet_.around_robots ? With(world, Others(*bodies_, robot)) : world, request);
+  if (!path) ++failures_;
   result[0] = path ? EncodePath(heap(), *path) : 0;
 }
 

@@ -33,13 +33,16 @@ std::vector<BodyParameter> ModelledBody::Parameters() const {
 void ModelledBody::Reset(const Point& position, double yaw) {
   const size_t none = code_->variables.size();
   x_.assign(none, 0);
-  offset_ = position;
+  changed_ = 0;
+  // Where a model says itself where it is, the fleet decides only what it has states for.
+  const bool tells = FindPort("psn") || FindPort("position") || FindPort("pos");
+  offset_ = tells ? Point{} : position;
   for (size_t i = 0; i < 3; ++i) {
     if (code_->position[i] == none) continue;
     x_[code_->position[i]] = position[i];
     offset_[i] = 0;
   }
-  turned_ = yaw;
+  turned_ = tells ? 0 : yaw;
   if (code_->heading != none) {
     x_[code_->heading] = yaw;
     turned_ = 0;
@@ -87,9 +90,13 @@ void ModelledBody::Rate(std::span<const double> x, std::span<double> dx) const {
 }
 
 void ModelledBody::Apply(const RobotUpdate& update, reach::Evaluator& evaluator) {
+  constexpr double kSame = 1e-9;
   outputs_.resize(update.set.size());
   evaluator(x_, outputs_);
-  for (size_t i = 0; i < update.set.size(); ++i) x_[update.set[i]] = outputs_[i];
+  for (size_t i = 0; i < update.set.size(); ++i) {
+    if (std::fabs(x_[update.set[i]] - outputs_[i]) > kSame) changed_ = time_;
+    x_[update.set[i]] = outputs_[i];
+  }
 }
 
 bool ModelledBody::Holds(const RobotFormula& formula, reach::Evaluator& evaluator) const {
@@ -117,6 +124,37 @@ bool ModelledBody::Settle() {
   return false;
 }
 
+// Integrates for `step` seconds, or up to where an event happens that does not at the start; `step` becomes how long.
+bool ModelledBody::Flow(double& step, Integrator integrator) {
+  const auto begin = x_.begin();
+  states_.assign(begin, begin + static_cast<ptrdiff_t>(code_->states));
+  const std::vector<double> start = states_;
+  const Derivative f = [this](std::span<const double> x, std::span<double> dx) { Rate(x, dx); };
+  const auto go = [&](double length) {
+    states_ = start;
+    if (!Integrate(integrator, f, states_, length)) return false;
+    std::ranges::copy(states_, begin);
+    return true;
+  };
+  const auto happens = [&] {
+    for (size_t e = 0; e < code_->events.size(); ++e) {
+      if (Holds(code_->events[e].condition, conditions_[e])) return true;
+    }
+    return false;
+  };
+  const bool from_the_start = happens();
+  if (!go(step)) return false;
+  if (from_the_start || !happens()) return true;
+  constexpr int kHalvings = 40;
+  double before = 0;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = (before + step) / 2;
+    if (!go(middle)) return false;
+    (happens() ? step : before) = middle;
+  }
+  return go(step);
+}
+
 bool ModelledBody::Advance(double dt, Integrator integrator) {
   Disturb(dt);
   constexpr double kTiny = 1e-12;  // seconds: sums of steps are not exact
@@ -132,10 +170,7 @@ bool ModelledBody::Advance(double dt, Integrator integrator) {
       step = std::min(step, static_cast<double>(samples_) * *code_->period - time_);
     }
     if (!Settle()) return false;
-    states_.assign(x_.begin(), x_.begin() + static_cast<ptrdiff_t>(code_->states));
-    const Derivative f = [this](std::span<const double> x, std::span<double> dx) { Rate(x, dx); };
-    if (step > kTiny && !Integrate(integrator, f, states_, step)) return false;
-    std::copy(states_.begin(), states_.end(), x_.begin());
+    if (step > kTiny && !Flow(step, integrator)) return false;
     time_ += step;
     left -= step;
   }
@@ -199,7 +234,8 @@ Point ModelledBody::velocity() const {
 }
 
 bool ModelledBody::AtRest() const {
-  if (!Body::AtRest()) return false;
+  // A controller that goes on counting will do something.
+  if (!Body::AtRest() || time_ - changed_ < 2 * code_->period.value_or(0)) return false;
   constexpr double kStill = 1e-6;  // per second, of what is no position
   outputs_.resize(code_->states);
   Rate(states_, outputs_);

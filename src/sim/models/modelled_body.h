@@ -11,7 +11,7 @@ namespace rondo::sim {
 
 /// Models a robot of a type that a model describes. Its states are integrated from the code that proofs are
 /// about, its controller acts at the instants 0, period, 2 period, ... of the run, whatever the steps, and its
-/// events happen at the end of the step in which their condition begins to hold.
+/// events happen where their condition begins to hold, unless it holds for less than a step.
 ///
 /// Disturbances, the inputs that nobody sets, keep a value of their range for a second on average: in half of
 /// the cases one of its ends. A body that has a port `target` goes through waypoints like all bodies.
@@ -45,6 +45,7 @@ class ModelledBody final : public Body {
   void Apply(const RobotUpdate& update, reach::Evaluator& evaluator);
   bool Holds(const RobotFormula& formula, reach::Evaluator& evaluator) const;
   bool Settle();
+  bool Flow(double& step, Integrator integrator);
   void FindPlace();
   void Watch();
 
@@ -62,6 +63,7 @@ class ModelledBody final : public Body {
   Point offset_{};
   double turned_ = 0;
   double time_ = 0;
+  double changed_ = 0;  // when a controller or an event set something else than before
   uint64_t samples_ = 0;
   std::vector<bool> was_broken_;
   std::vector<std::string> broken_;

@@ -36,9 +36,9 @@ base::Result<Image> ReadPgm(const std::string& bytes) {
   image.columns = Next(in);
   image.rows = Next(in);
   const int most = Next(in);
-  if (image.columns < 1 || image.rows < 1 || image.columns > kLargest || image.rows > kLargest || most < 1 ||
-      most > 255)
+  if (image.columns < 1 || image.rows < 1 || image.columns > kLargest || image.rows > kLargest || most < 1)
     return base::Error{"its header is damaged"};
+  if (most > 255) return base::Error{"it has more than 256 shades"};
   const size_t cells = static_cast<size_t>(image.columns) * static_cast<size_t>(image.rows);
   if (cells > bytes.size()) return base::Error{"it is cut off"};
   image.grey.resize(cells);
@@ -46,7 +46,8 @@ base::Result<Image> ReadPgm(const std::string& bytes) {
   if (!text) in.get();
   for (uint8_t& cell : image.grey) {
     const int value = text ? Next(in) : in.get();
-    if (value < 0 || !in || value > most) return base::Error{"it is cut off"};
+    if (value > most) return base::Error{"a cell is brighter than its header allows"};
+    if (value < 0 || !in) return base::Error{"it is cut off"};
     cell = static_cast<uint8_t>(std::lround(255.0 * value / most));
   }
   return image;
@@ -64,6 +65,7 @@ base::Result<Image> ReadPng(const std::string& bytes) {
     png_image_free(&png);
     return base::Error{"it is larger than 20,000 cells"};
   }
+  const bool alpha = (png.format & PNG_FORMAT_FLAG_ALPHA) != 0;
   png.format = PNG_FORMAT_RGBA;
   std::vector<uint8_t> pixels(PNG_IMAGE_SIZE(png));
   if (png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr) == 0)
@@ -71,7 +73,7 @@ base::Result<Image> ReadPng(const std::string& bytes) {
   for (size_t i = 0; i < pixels.size(); i += 4) {
     image.grey.push_back(
         static_cast<uint8_t>(std::lround((pixels[i] + pixels[i + 1] + pixels[i + 2]) / 3.0)));
-    image.alpha.push_back(pixels[i + 3]);
+    if (alpha) image.alpha.push_back(pixels[i + 3]);
   }
   return image;
 }
@@ -94,8 +96,11 @@ struct Reading {
   bool scale = false;
 
   bool IsFree(const Image& picture, size_t cell) const {
-    const double shade = picture.grey[cell];
-    if (scale && !picture.alpha.empty() && picture.alpha[cell] < 255) return false;
+    double shade = picture.grey[cell];
+    const bool alpha = !picture.alpha.empty();
+    if (scale && alpha && picture.alpha[cell] < 255) return false;
+    // As the map server does: the opacity counts like a colour.
+    if (!raw && !scale && alpha) shade = (3 * shade + picture.alpha[cell]) / 4;
     if (raw) return shade <= 100 && shade / 100 < free;
     return (negate ? shade : 255 - shade) / 255 < free;
   }

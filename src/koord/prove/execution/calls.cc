@@ -173,7 +173,7 @@ TermId Executor::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) 
     case Builtin::kSlice: {
       const TermId list = Eval(e.args[1]);
       const TermId from = Eval(e.args[2]);
-      const TermId to = Eval(e.args[3]);
+      const TermId to = e.args.size() > 3 ? Eval(e.args[3]) : arena_.Length(list);
       Check(CheckKind::kIndex, e.span,
             arena_.And({arena_.Le(arena_.IntNumber(0), from), arena_.Le(from, to),
                         arena_.Le(to, arena_.Length(list))}));

@@ -90,6 +90,9 @@ class Problems {
   /// States [Sat]: where the condition of promise `p` holds, the environment can keep it and all others.
   /// @param with  states that it keeps them; else only that the condition holds.
   Problem SomePromise(size_t p, bool with);
+  /// Asks for a state that satisfies the invariants, in which both of these promises are due; `kept`: and for what the
+  /// environment can make of it that keeps both.
+  Problem BothPromises(size_t a, size_t b, bool kept);
   /// States [Now]: where the invariants and the condition of promise `p` hold, the promise holds at t = 0.
   Problem PromiseNow(size_t p);
   /// Returns the promises of one robot in a round; their places are the numbers `p` above.
@@ -112,6 +115,7 @@ class Problems {
   void AddDistances(Problem& problem);
   Problem WithWitnesses(TermId refuted, const std::function<Problem(const std::vector<TermId>&)>& state);
   Problem InitiallyFor(TermId refuted, const std::vector<TermId>& others);
+  void ActuatorsStay(std::vector<solve::Assertion>& assertions);
   Problem StepFor(Round& round, TermId refuted, const std::vector<TermId>& others,
                   std::optional<size_t> action, bool reachable, bool at_rounds);
   std::vector<TermId> Witnesses(const Problem& problem);

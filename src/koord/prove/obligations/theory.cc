@@ -210,6 +210,11 @@ std::vector<Assertion> Theory::PortPromises(Round& round, TermId robot, bool ove
     // What holds at the end is promised to actuators that stayed as they were for the whole round: the first leg.
     for (const Promise& p : Promises(legs[i].from, legs[i].to, robot)) {
       if (p.def->at_end && (!over || i > 0)) continue;
+      // Without a condition it holds whatever the actuators do.
+      if (p.def->at_end && !p.def->when.valid() && !UsesOld(model_, p.def->body)) {
+        result.push_back({arena_.Or(arena_.Not(round.moved()), p.promise), p.name});
+        continue;
+      }
       result.push_back({arena_.Or({legs[i].still, arena_.Not(p.condition), p.promise}), p.name});
     }
   }

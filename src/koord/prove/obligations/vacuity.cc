@@ -57,6 +57,16 @@ Problem Problems::SomeEnabled(size_t action) {
   return Ground(std::move(assertions), {});
 }
 
+// The environment moves sensors only.
+void Problems::ActuatorsStay(std::vector<Assertion>& assertions) {
+  for (size_t v = 0; v < model_.variables.size(); ++v) {
+    if (model_.variables[v].kind != VariableKind::kActuator) continue;
+    assertions.push_back({arena_.Eq(arena_.Select(round_.end().value[v], robot_),
+                                    arena_.Select(round_.start().value[v], robot_)),
+                          ""});
+  }
+}
+
 Problem Problems::SomePromise(size_t p, bool with) {
   const Theory::Promise promise = theory_.Promises(round_.start(), round_.end(), robot_)[p];
   std::vector<Assertion> assertions{{vocabulary_.IsRobot(robot_), ""}, {promise.condition, ""}};
@@ -64,14 +74,24 @@ Problem Problems::SomePromise(size_t p, bool with) {
     for (const Theory::Promise& other : theory_.Promises(round_.start(), round_.end(), robot_)) {
       assertions.push_back({arena_.Implies(other.condition, other.promise), other.name});
     }
-    for (size_t v = 0; v < model_.variables.size(); ++v) {
-      // The environment moves sensors only.
-      if (model_.variables[v].kind != VariableKind::kActuator) continue;
-      assertions.push_back({arena_.Eq(arena_.Select(round_.end().value[v], robot_),
-                                      arena_.Select(round_.start().value[v], robot_)),
-                            ""});
-    }
+    ActuatorsStay(assertions);
     Append(assertions, theory_.PortFacts(round_.end()));
+  }
+  Append(assertions, theory_.PortFacts(round_.start()));
+  return Ground(std::move(assertions), {});
+}
+
+Problem Problems::BothPromises(size_t a, size_t b, bool kept) {
+  const std::vector<Theory::Promise> all = theory_.Promises(round_.start(), round_.end(), robot_);
+  std::vector<Assertion> assertions{
+      {vocabulary_.IsRobot(robot_), ""}, {all[a].condition, ""}, {all[b].condition, ""}};
+  if (kept) {
+    assertions.push_back({all[a].promise, ""});
+    assertions.push_back({all[b].promise, ""});
+    ActuatorsStay(assertions);
+    Append(assertions, theory_.PortFacts(round_.end()));
+  } else {
+    Append(assertions, Everything(round_.start(), false));
   }
   Append(assertions, theory_.PortFacts(round_.start()));
   return Ground(std::move(assertions), {});

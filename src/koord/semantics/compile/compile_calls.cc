@@ -210,9 +210,9 @@ void Compiler::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) {
       return;
     }
     case Builtin::kSlice:
-      for (size_t i = 1; i <= 3; ++i) Gen(e.args[i]);
+      for (size_t i = 1; i < e.args.size(); ++i) Gen(e.args[i]);
       span_ = e.span;
-      Emit(Op::kListSlice, Width(types[model_.TypeOf(e.args[1])].parts[0]));
+      Emit(Op::kListSlice, Width(types[model_.TypeOf(e.args[1])].parts[0]), e.args.size() > 3 ? 0 : 1);
       return;
     case Builtin::kRemove:
     case Builtin::kInsert:

@@ -31,6 +31,25 @@ bool Compiler::Mentions(ExprId id, const std::vector<uint32_t>& bindings) const 
   return std::any_of(e.args.begin(), e.args.end(), [&](ExprId a) { return Mentions(a, bindings); });
 }
 
+// Does it have a value wherever it stands? Sums may overflow, and items be none.
+bool Compiler::CannotFail(ExprId id) const {
+  const lang::Expr& e = exprs_[id];
+  const Ref ref = model_.RefOf(id);
+  switch (e.kind) {
+    case ExprKind::kInt:
+    case ExprKind::kPid:
+      return true;
+    case ExprKind::kName:
+    case ExprKind::kField:
+      return ref.kind != RefKind::kNone;
+    case ExprKind::kCall:
+      return ref.kind == RefKind::kBuiltin && static_cast<Builtin>(ref.index) == Builtin::kLen &&
+             CannotFail(e.args[1]);
+    default:
+      return false;
+  }
+}
+
 // From `v < e`, `e <= v` and the like. If e is another variable that is not bound yet, its limits are limits
 // of v, too.
 void Compiler::Limits(uint32_t binding, bool upper, const std::vector<ExprId>& conditions,
@@ -38,8 +57,13 @@ void Compiler::Limits(uint32_t binding, bool upper, const std::vector<ExprId>& c
                       std::vector<Limit>& limits) const {
   if (std::find(seen.begin(), seen.end(), binding) != seen.end()) return;
   seen.push_back(binding);
+  // Conditions are asked one after the other: only those at the front, which bound variables, are always.
+  bool first = true;
   for (const ExprId id : conditions) {
     const lang::Expr& e = exprs_[id];
+    first = first && e.kind == ExprKind::kBinary &&
+            (e.text[0] == '<' || e.text[0] == '>' || e.text == "==") &&
+            std::ranges::any_of(e.args, [&](ExprId a) { return model_.RefOf(a).kind == RefKind::kBinding; });
     if (e.kind != ExprKind::kBinary) continue;
     const bool equal = e.text == "==";
     if (!equal && e.text[0] != '<' && e.text[0] != '>') continue;
@@ -49,7 +73,7 @@ void Compiler::Limits(uint32_t binding, bool upper, const std::vector<ExprId>& c
       const bool below = (e.text[0] == '<') == (side == 0);  // the variable is the smaller one
       if (!equal && below != upper) continue;
       const ExprId other = e.args[1 - side];
-      if (!model_.types.Is(model_.TypeOf(other), TypeKind::kInt)) continue;
+      if (!model_.types.Is(model_.TypeOf(other), TypeKind::kInt) || (!first && !CannotFail(other))) continue;
       const bool strict = e.text.size() == 1;
       // Half-open: from the lower limit up to, not including, the upper one.
       const int64_t plus = upper ? (strict ? 0 : 1) : (strict ? 1 : 0);

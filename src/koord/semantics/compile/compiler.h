@@ -113,6 +113,7 @@ class Compiler {
   void Limits(uint32_t binding, bool upper, const std::vector<ExprId>& conditions,
               const std::vector<uint32_t>& unbound, std::vector<uint32_t>& seen,
               std::vector<Limit>& limits) const;
+  bool CannotFail(ExprId id) const;
   bool Mentions(ExprId e, const std::vector<uint32_t>& bindings) const;
   void Range(const std::vector<Limit>& limits, Op pick, uint32_t slot);
 

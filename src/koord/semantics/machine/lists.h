@@ -127,12 +127,12 @@ RONDO_INSTRUCTION RunListDrop(Registers& r, const Instruction& i) {
   return Fault::kNone;
 }
 
-// Below: the list, the first index, the one behind the last.
+// Below: the list, the first index, and the one behind the last; without that (b: 1), up to the end.
 RONDO_INSTRUCTION RunListSlice(Registers& r, const Instruction& i) {
-  r.top -= 2;
+  r.top -= i.b == 0 ? 2 : 1;
   const auto items = r.m.heap[r.top[-1]];
   const int64_t from = ToInt(r.top[0]);
-  const int64_t to = ToInt(r.top[1]);
+  const int64_t to = i.b == 0 ? ToInt(r.top[1]) : static_cast<int64_t>(items.size() / i.a);
   if (from < 0 || to < from || static_cast<uint64_t>(to) > items.size() / i.a) {
     RONDO_TOTAL(Index);
     return Fault::kNone;

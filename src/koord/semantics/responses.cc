@@ -1,0 +1,43 @@
+#include "koord/semantics/responses.h"
+
+namespace rondo::koord::semantics {
+
+namespace {
+
+// A byte for each wait: 0 for none, else how many rounds it has lasted, and one.
+constexpr size_t kEach = 8;
+
+}  // namespace
+
+Responses::Responses(Team& team) : team_(team) {
+  const size_t waits = team.responses().size() * team.robots();
+  words_ = (waits + kEach - 1) / kEach;
+}
+
+int Responses::Observe(std::span<const Word> state, std::span<Word> waits, size_t* robot) {
+  // Formulas only read.
+  team_.machine().SetMemory(const_cast<Word*>(state.data()));  // NOLINT
+  int late = -1;
+  size_t number = 0;
+  for (size_t i = 0; i < team_.responses().size(); ++i) {
+    const ResponseCode& response = team_.responses()[i];
+    for (size_t r = 0; r < team_.robots(); ++r, ++number) {
+      Word& word = waits[number / kEach];
+      const size_t shift = 8 * (number % kEach);
+      uint64_t wait = word >> shift & 0xff;
+      const bool waits_on = wait > 0;
+      if (team_.machine().RunFormula(response.then.entry, r))
+        wait = 0;
+      else if (waits_on || team_.machine().RunFormula(response.when.entry, r))
+        ++wait;
+      if (wait > response.rounds + 1 && late < 0) {
+        late = static_cast<int>(i);
+        if (robot != nullptr) *robot = r;
+      }
+      word = (word & ~(Word{0xff} << shift)) | std::min<uint64_t>(wait, response.rounds + 2) << shift;
+    }
+  }
+  return late;
+}
+
+}  // namespace rondo::koord::semantics
