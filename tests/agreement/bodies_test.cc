@@ -1,4 +1,4 @@
-// The bodies in the plane that fleets have without a file, against the same ones in the language of models: two programs
+// Bodies that fleets have without a file, against the same ones in the language of models: two programs
 // that share neither dynamics nor controllers nor integration code for them go the same ways.
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ TEST_P(EveryPair, GoesTheSameWay) {
   workspace::Session session;
   const std::string text = std::string("[[robot]]\nmodel = \"") + GetParam().built_in +
                            "\"\nposition = [0, 0, 0]\n[[robot]]\nmodel = \"" + GetParam().model +
-                           "\"\nfrom = \"models/plane.rondo\"\n";
+                           "\"\nfrom = \"models/bodies.rondo\"\n";
   FleetFiles files("fleet.toml", session);
   const sim::Fleet fleet = files.Read(session.sources.Add("fleet.toml", text));
   ASSERT_FALSE(session.diagnostics.has_errors()) << session.diagnostics.all()[0].message;
@@ -48,7 +48,7 @@ TEST_P(EveryPair, GoesTheSameWay) {
 
 INSTANTIATE_TEST_SUITE_P(Bodies, EveryPair,
                          testing::Values(Pair{"unicycle", "Unicycle"}, Pair{"car", "Bicycle"},
-                                         Pair{"cart", "OmniCart"}),
+                                         Pair{"cart", "OmniCart"}, Pair{"point_mass", "PointMass"}),
                          [](const auto& test) { return test.param.model; });
 
 }  // namespace
