@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "lang/expr_queries.h"
+
 namespace rondo::lang {
 
 using diag::Kind;
@@ -176,14 +178,6 @@ ExprId ExprParser::ParseBinders(Span start, ExprKind kind, const std::string& te
   return pool_.Add(std::move(quantifier));
 }
 
-bool ExprParser::Mentions(ExprId id, const std::vector<std::string>& names) const {
-  const Expr& e = pool_[id];
-  if (e.kind == ExprKind::kName && std::ranges::find(names, e.text) != names.end()) return true;
-  return std::ranges::any_of(e.args, [&](ExprId arg) { return Mentions(arg, names); }) ||
-         std::ranges::any_of(e.binders,
-                             [&](const Binder& b) { return b.domain.valid() && Mentions(b.domain, names); });
-}
-
 // `c in range(n)` is c in int with 0 <= c and c < n.
 ExprId ExprParser::ParseRange(const std::vector<std::string>& names) {
   const Span span = Take().span;
@@ -197,7 +191,7 @@ ExprId ExprParser::ParseRange(const std::vector<std::string>& names) {
     return Fail(span);
   }
   for (const ExprId limit : limits) {
-    if (!Mentions(limit, names)) continue;
+    if (!MentionsName(pool_, limit, names)) continue;
     failed_ = true;
     diagnostics_
         .Report(Kind::kSyntaxUnexpected, pool_[limit].span,

@@ -92,7 +92,6 @@ class ExprParser {
   std::vector<ExprId> ParseItems(std::string_view close);
   ExprId ParseBinders(diag::Span start, ExprKind kind, const std::string& text);
   bool ParseBinder(Binder& binder, ExprId& range);
-  bool Mentions(ExprId id, const std::vector<std::string>& names) const;
   ExprId Binary(std::string text, ExprId a, ExprId b);
 
   int depth_ = 0;

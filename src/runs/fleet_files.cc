@@ -12,7 +12,6 @@
 #include "base/file.h"
 #include "lang/suggest.h"
 #include "robot/dynamics/motion_problem.h"
-#include "robot/model/body.h"
 #include "sim/models/modelled_body.h"
 
 namespace rondo::runs {
@@ -90,6 +89,66 @@ bool FleetFiles::StartsInRange(const sim::RobotCode& code, const sim::FleetRobot
   return true;
 }
 
+// The robot type of a module; nullptr after a report.
+const robot::RobotDef* FleetFiles::TypeOf(const workspace::LoadedModule& module,
+                                          const sim::FleetRobot& robot) {
+  std::vector<std::string> names;
+  for (const choreo::Item& item : module.module.items) {
+    const auto* def = std::get_if<robot::RobotDef>(&item);
+    if (def == nullptr) continue;
+    if (def->name.text == robot.model) return def;
+    names.push_back(def->name.text);
+  }
+  const std::string near = lang::Suggest(robot.model, names);
+  Wrong(robot, fmt::format("there is no robot type `{}` in `{}`", robot.model, robot.from))
+      .Help(near.empty() ? fmt::format("it has {}", fmt::join(names, ", "))
+                         : fmt::format("did you mean `{}`?", near));
+  return nullptr;
+}
+
+// Divides parameters into those of the type, and those that every body has. False after a report.
+bool FleetFiles::Divide(const robot::RobotDef& type, const sim::FleetRobot& robot, expr::Arena& arena,
+                        robot::Arguments& of_type, std::map<std::string, double>& of_all) {
+  const auto common = sim::ModelledBody(std::make_shared<sim::RobotCode>(), {}).Parameters();
+  for (const auto& [name, value] : robot.parameters) {
+    if (robot::HasParameter(type, name)) {
+      robot::Value number =
+          robot::Quantity(arena.Number(arena.Real(), expr::Rational::FromDouble(value)), {});
+      number.any_dimension = true;
+      of_type.emplace(name, std::pair(std::move(number), robot.span));
+      continue;
+    }
+    if (std::ranges::find(common, name, &sim::BodyParameter::name) == common.end()) {
+      Wrong(robot, fmt::format("`{}` has no parameter `{}`", robot.model, name));
+      return false;
+    }
+    const double least = name == "dwell" ? 0 : 1e-6;
+    if (!(value >= least && value <= 1e6)) {
+      Wrong(robot, fmt::format("`{}` must lie between {:g} and 1000000", name, least));
+      return false;
+    }
+    of_all.emplace(name, value);
+  }
+  return true;
+}
+
+// Is everything that the robot is to start with something that its type has?
+bool FleetFiles::Knows(const sim::RobotCode& code, const sim::FleetRobot& robot) {
+  for (const auto& [name, value] : robot.initial) {
+    if (code.Find(name) < code.variables.size()) continue;
+    std::vector<std::string> all;
+    for (const sim::RobotVariable& v : code.variables) all.push_back(v.name);
+    Wrong(robot, fmt::format("`{}` has no state `{}`", robot.model, name))
+        .Help(fmt::format("it has {}", fmt::join(all, ", ")));
+    return false;
+  }
+  return true;
+}
+
+diag::Diagnostic& FleetFiles::Wrong(const sim::FleetRobot& robot, std::string message) {
+  return session_.diagnostics.Report(Kind::kFleetValue, robot.span, std::move(message));
+}
+
 sim::BodyFactory FleetFiles::Model(const sim::FleetRobot& robot) {
   std::string key = robot.from + "\n" + robot.model;
   for (const auto* values : {&robot.parameters, &robot.initial}) {
@@ -98,77 +157,30 @@ sim::BodyFactory FleetFiles::Model(const sim::FleetRobot& robot) {
   }
   if (const auto it = made_.find(key); it != made_.end()) return it->second;
   workspace::LoadedModule* module = Module(robot.from, robot.span);
-  if (module == nullptr) return {};
-  const auto wrong = [&](std::string message) -> diag::Diagnostic& {
-    return session_.diagnostics.Report(Kind::kFleetValue, robot.span, std::move(message));
-  };
-  const robot::RobotDef* type = nullptr;
-  std::vector<std::string> names;
-  for (const choreo::Item& item : module->module.items) {
-    const auto* def = std::get_if<robot::RobotDef>(&item);
-    if (def == nullptr) continue;
-    names.push_back(def->name.text);
-    if (def->name.text == robot.model) type = def;
-  }
-  if (type == nullptr) {
-    auto& report = wrong(fmt::format("there is no robot type `{}` in `{}`", robot.model, robot.from));
-    const std::string near = lang::Suggest(robot.model, names);
-    report.Help(near.empty() ? fmt::format("it has {}", fmt::join(names, ", "))
-                             : fmt::format("did you mean `{}`?", near));
-    return {};
-  }
-  // What all bodies have is not the model's.
-  const sim::ModelledBody any(std::make_shared<sim::RobotCode>(), {});
-  const auto common = any.Parameters();
+  const robot::RobotDef* type = module == nullptr ? nullptr : TypeOf(*module, robot);
+  robot::Arguments of_type;
   std::map<std::string, double> of_all;
-  robot::Arguments given;
-  expr::Arena& arena = module->arena;
-  for (const auto& [name, value] : robot.parameters) {
-    if (robot::HasParameter(*type, name)) {
-      robot::Value number =
-          robot::Quantity(arena.Number(arena.Real(), expr::Rational::FromDouble(value)), {});
-      number.any_dimension = true;
-      given.emplace(name, std::pair(std::move(number), robot.span));
-    } else if (std::ranges::any_of(common, [&](const auto& p) { return p.name == name; })) {
-      const double least = name == "dwell" ? 0 : 1e-6;
-      if (!(value >= least && value <= 1e6)) {
-        wrong(fmt::format("`{}` must lie between {:g} and 1000000", name, least));
-        return {};
-      }
-      of_all.emplace(name, value);
-    } else {
-      wrong(fmt::format("`{}` has no parameter `{}`", robot.model, name));
-      return {};
-    }
-  }
+  if (type == nullptr || !Divide(*type, robot, module->arena, of_type, of_all)) return {};
   robot::World world;
   const size_t before = session_.diagnostics.errors();
-  if (!robot::StandAlone(*type, module->declarations->evaluator(), world, given)) {
-    wrong(fmt::format("`{}` has parameters without a value", robot.model)).Help("give them in `parameters`");
+  if (!robot::StandAlone(*type, module->declarations->evaluator(), world, of_type)) {
+    Wrong(robot, fmt::format("`{}` has parameters without a value", robot.model))
+        .Help("give them in `parameters`");
     return {};
   }
   if (session_.diagnostics.errors() != before) return {};
-  auto code = sim::CodeOf(world, world.bodies[0], arena);
+  auto code = sim::CodeOf(world, world.bodies[0], module->arena);
   if (!code.ok()) {
-    wrong(fmt::format("`{}` cannot be a body: {}", robot.model, code.error().message));
+    Wrong(robot, fmt::format("`{}` cannot be a body: {}", robot.model, code.error().message));
     return {};
   }
   const auto shared = std::make_shared<const sim::RobotCode>(std::move(code).value());
-  for (const auto& [name, value] : robot.initial) {
-    if (shared->Find(name) < shared->variables.size()) continue;
-    std::vector<std::string> all;
-    for (const sim::RobotVariable& v : shared->variables) all.push_back(v.name);
-    wrong(fmt::format("`{}` has no state `{}`", robot.model, name))
-        .Help(fmt::format("it has {}", fmt::join(all, ", ")));
-    return {};
-  }
-  if (!StartsInRange(*shared, robot)) return {};
-  const sim::BodyFactory factory = [shared, initial = robot.initial, of_all]() -> std::unique_ptr<sim::Body> {
+  if (!Knows(*shared, robot) || !StartsInRange(*shared, robot)) return {};
+  return made_[key] = [shared, initial = robot.initial, of_all]() -> std::unique_ptr<sim::Body> {
     auto body = std::make_unique<sim::ModelledBody>(shared, initial);
     for (const auto& [name, value] : of_all) body->Set(name, value);
     return body;
   };
-  return made_[key] = factory;
 }
 
 namespace {

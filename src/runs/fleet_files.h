@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "robot/model/body.h"
 #include "sim/fleet/fleet.h"
 #include "sim/models/robot_code.h"
 #include "workspace/module_files.h"
@@ -32,6 +33,11 @@ class FleetFiles {
  private:
   base::Result<std::string> Bytes(const std::string& path);
   workspace::LoadedModule* Module(const std::string& from, diag::Span span);
+  const robot::RobotDef* TypeOf(const workspace::LoadedModule& module, const sim::FleetRobot& robot);
+  bool Divide(const robot::RobotDef& type, const sim::FleetRobot& robot, expr::Arena& arena,
+              robot::Arguments& of_type, std::map<std::string, double>& of_all);
+  bool Knows(const sim::RobotCode& code, const sim::FleetRobot& robot);
+  diag::Diagnostic& Wrong(const sim::FleetRobot& robot, std::string message);
   bool StartsInRange(const sim::RobotCode& code, const sim::FleetRobot& robot);
   sim::BodyFactory Model(const sim::FleetRobot& robot);
 

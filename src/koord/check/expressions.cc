@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "koord/check/checker.h"
-#include "lang/expr_printer.h"
+#include "lang/expr_queries.h"
 
 namespace rondo::koord {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lang/expr_printer.h"
+#include "lang/expr_queries.h"
 
 namespace rondo::koord {
 namespace {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lang/syntax_tree.h"
+
+/// Answers questions about expressions of which only the syntax is known.
+namespace rondo::lang {
+
+/// Reports whether an expression uses one of these names.
+bool MentionsName(const ExprPool& pool, ExprId expr, const std::vector<std::string>& names);
+
+/// Holds what `forall c in range(from, to): body` is made of.
+struct RangeDomain {
+  ExprId from, to, body;
+};
+/// Returns the range that a quantifier over ints goes over, `forall c in int: from <= c and c < to implies body` or
+/// `exists c in int: from <= c and c < to and body`, as the parser makes it of `range`; nothing if it is another one.
+std::optional<RangeDomain> RangeOf(const ExprPool& pool, const Expr& quantifier);
+
+}  // namespace rondo::lang
