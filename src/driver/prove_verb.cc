@@ -98,8 +98,11 @@ ExitStatus Run(const Options& options) {
   if (model.invariants.empty()) {
     session.diagnostics
         .Report(diag::Kind::kKoordNoInvariant, loaded->program.item_spans.back(), "there is nothing to prove")
-        .Help(
-            "state what must always hold: `invariant NAME: ...`, here or in the `.spec` file beside the program");
+        .Help(model.responses.empty()
+                  ? "state what must always hold: `invariant NAME: ...`, here or in the `.spec` file "
+                    "beside the program"
+                  : "responses are checked by `rondo explore` and `rondo simulate`; proofs are of "
+                    "invariants");
     return finish_early(ExitStatus::kRejected);
   }
   const solve::z3::Z3Solver z3;

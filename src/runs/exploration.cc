@@ -180,6 +180,9 @@ void ReportUnchecked(const Team& team, Explored& explored, diag::Diagnostics& di
     for (size_t i = 0; i < model.invariants.size(); ++i) {
       if (koord::InvariantName(model, i) == part.name) explored.unchecked.push_back(part.name);
     }
+    for (const koord::ResponseDef* def : model.responses) {
+      if (def->name == part.name) explored.unchecked.push_back(part.name);
+    }
   }
   for (const size_t v : team.zeroed()) explored.zeroed.push_back(model.variables[v].name);
 }
@@ -225,7 +228,16 @@ void ReportNoInitialState(const Team& team, Explored& explored, diag::Diagnostic
 }
 
 // Invariants that have no value somewhere, and sensors that have none.
-void ReportGaps(const Team& team, const System& system, Explored& explored, diag::Diagnostics& diagnostics) {
+void ReportGaps(const Team& team, const System& system, const std::vector<bool>& undefined_responses,
+                Explored& explored, diag::Diagnostics& diagnostics) {
+  for (size_t i = 0; i < undefined_responses.size(); ++i) {
+    if (!undefined_responses[i]) continue;
+    explored.unchecked.push_back(team.responses()[i].name);
+    diagnostics
+        .Report(Kind::kKoordNotChecked, team.responses()[i].span,
+                fmt::format("`{}` is not checked in every state", team.responses()[i].name))
+        .Under("in some state an operation in it has no value");
+  }
   for (size_t i = 0; i < system.undefined().size(); ++i) {
     if (!system.undefined()[i]) continue;
     const auto& invariant = team.invariants()[i];
@@ -296,7 +308,7 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
   if (search.ending == Ending::kDeadlock) ReportDeadlock(*team, system, explored, diagnostics);
   if (options.walks == 0 && search.initial == 0 && search.ending == Ending::kComplete)
     ReportNoInitialState(*team, explored, diagnostics);
-  ReportGaps(*team, system, explored, diagnostics);
+  ReportGaps(*team, system, timed.responses().undefined(), explored, diagnostics);
   explored.enabled = system.enabled();
   explored.branches = team->machine().marks();
   for (const auto& [stmt, otherwise] : team->branches())

@@ -153,8 +153,10 @@ bool Run::BeforeInit() {
       }
     }
   }
-  const auto run = [&](const std::vector<koord::semantics::InitialCode>& code) {
+  const auto run = [&](const std::vector<koord::semantics::InitialCode>& code, bool derived) {
     for (const auto& i : code) {
+      // What the fleet says comes first; the monitor tells if an assumption says otherwise.
+      if (derived && fleet_.initial.contains(model_.variables[i.variable].name)) continue;
       const bool own = model_.variables[i.variable].PerRobot();
       for (size_t r = 0; r < (own ? bodies_.size() : 1); ++r) {
         if (machine.Run(i.entry, r, false)) continue;
@@ -165,7 +167,7 @@ bool Run::BeforeInit() {
     }
     return true;
   };
-  if (!run(team_->declared())) return false;
+  if (!run(team_->declared(), false)) return false;
   for (const auto& [name, given] : fleet_.initial) {
     const int found = Find(name);
     const auto v = static_cast<size_t>(found);
@@ -193,7 +195,7 @@ bool Run::BeforeInit() {
   }
   if (diagnostics_.errors() != before) return false;
   machine.SetMemory(state_.data());
-  return run(team_->derived());
+  return run(team_->derived(), true);
 }
 
 bool Run::Start() {

@@ -1,5 +1,7 @@
 #include "koord/semantics/responses.h"
 
+#include <optional>
+
 namespace rondo::koord::semantics {
 
 namespace {
@@ -9,7 +11,7 @@ constexpr size_t kEach = 8;
 
 }  // namespace
 
-Responses::Responses(Team& team) : team_(team) {
+Responses::Responses(Team& team) : team_(team), undefined_(team.responses().size()) {
   const size_t waits = team.responses().size() * team.robots();
   words_ = (waits + kEach - 1) / kEach;
 }
@@ -25,16 +27,24 @@ int Responses::Observe(std::span<const Word> state, std::span<Word> waits, size_
       Word& word = waits[number / kEach];
       const size_t shift = 8 * (number % kEach);
       uint64_t wait = word >> shift & 0xff;
+      // Where a formula has no value, nobody is judged by it.
+      const auto holds = [&](const FormulaCode& formula) {
+        const bool value = team_.machine().RunFormula(formula.entry, r);
+        const bool known = !team_.machine().used_default() && team_.machine().fault() == Fault::kNone;
+        undefined_[i] = undefined_[i] || !known;
+        return known ? std::optional(value) : std::nullopt;
+      };
       const bool waits_on = wait > 0;
-      if (team_.machine().RunFormula(response.then.entry, r))
+      if (holds(response.then).value_or(true))
         wait = 0;
-      else if (waits_on || team_.machine().RunFormula(response.when.entry, r))
+      else if (waits_on || holds(response.when).value_or(false))
         ++wait;
-      if (wait > response.rounds + 1 && late < 0) {
+      // In the state where it begins to wait, no round has passed yet.
+      if (wait > response.rounds && late < 0) {
         late = static_cast<int>(i);
         if (robot != nullptr) *robot = r;
       }
-      word = (word & ~(Word{0xff} << shift)) | std::min<uint64_t>(wait, response.rounds + 2) << shift;
+      word = (word & ~(Word{0xff} << shift)) | std::min<uint64_t>(wait, response.rounds + 1) << shift;
     }
   }
   return late;

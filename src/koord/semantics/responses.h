@@ -22,10 +22,13 @@ class Responses {
   /// waited too long; -1 if there is none.
   /// @param robot  receives who waits for it.
   int Observe(std::span<const Word> state, std::span<Word> waits, size_t* robot = nullptr);
+  /// Returns, by response, whether it met an operation without a value in some state; there, it was not judged.
+  const std::vector<bool>& undefined() const { return undefined_; }
 
  private:
   Team& team_;
   size_t words_ = 0;
+  std::vector<bool> undefined_;
 };
 
 }  // namespace rondo::koord::semantics

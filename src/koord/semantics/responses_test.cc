@@ -45,14 +45,16 @@ TEST_F(ResponsesTest, EachRobotMayWaitForSoManyRounds) {
   EXPECT_EQ(responses.Observe(state_, waits), -1);
   EXPECT_EQ(waits, std::vector<Word>(responses.words()));
   Set("p", 1, true);
-  EXPECT_EQ(responses.Observe(state_, waits), -1);  // it begins to wait
-  Set("p", 1, false);                               // and goes on
-  EXPECT_EQ(responses.Observe(state_, waits), -1);
-  EXPECT_EQ(responses.Observe(state_, waits), -1);
-  EXPECT_EQ(responses.Observe(state_, waits, &robot), 0);
+  EXPECT_EQ(responses.Observe(state_, waits), -1);         // it begins to wait
+  Set("p", 1, false);                                      // and goes on
+  EXPECT_EQ(responses.Observe(state_, waits), -1);         // a round later
+  EXPECT_EQ(responses.Observe(state_, waits, &robot), 0);  // two
   EXPECT_EQ(robot, 1U);
   Set("q", 1, true);
   EXPECT_EQ(responses.Observe(state_, waits), -1);
+  Set("q", 1, false);
+  Set("q", 1, true);
+  Set("p", 1, false);
   Set("q", 1, false);
   EXPECT_EQ(responses.Observe(state_, waits), -1);
   EXPECT_EQ(waits, std::vector<Word>(responses.words()));
@@ -64,8 +66,7 @@ TEST_F(ResponsesTest, WhatFollowsAtOnceNeedsNoWait) {
   Set("p", 0, true);
   Set("q", 0, true);
   EXPECT_EQ(responses.Observe(state_, waits), -1);
-  EXPECT_EQ(responses.Observe(state_, waits), -1);
-  EXPECT_EQ(responses.Observe(state_, waits), 1);  // q, and still p
+  EXPECT_EQ(responses.Observe(state_, waits), 1);  // q, and a round later still p
 }
 
 }  // namespace

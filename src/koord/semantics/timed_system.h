@@ -19,6 +19,7 @@ class TimedSystem {
 
   /// Returns which response a broken property is; nothing if it is one of the system's.
   std::optional<size_t> ResponseOf(int property) const;
+  const Responses& responses() const { return responses_; }
   /// Returns the part of each state that the system knows.
   std::vector<std::vector<Word>> OfSystem(const std::vector<std::vector<Word>>& path) const;
 
