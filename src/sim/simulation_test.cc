@@ -154,7 +154,31 @@ TEST(Simulation, ValuesOfTheFleetMustFitTheProgram) {
             std::vector<std::string>{"the program has no parameter `a`"});
   fleet.params.clear();
   fleet.initial["n"] = {true, {}};
-  EXPECT_EQ(Play(Local("        n = 1\n"), fleet).messages, std::vector<std::string>{"`n` must be a `int`"});
+  EXPECT_EQ(Play("local:\n    int n\nGo:\n    eff:\n        n = 1\n", fleet).messages,
+            std::vector<std::string>{"`n` must be a `int`"});
+}
+
+TEST(Simulation, ValuesOfTheFleetTakeNoPlaceOfDeclaredOnes) {
+  Fleet fleet = Masses(1);
+  fleet.initial["n"] = {3, {}};
+  EXPECT_EQ(Play(Local("        n = 1\n"), fleet).messages,
+            std::vector<std::string>{"`n` has a value already"});
+  fleet.initial.clear();
+  fleet.params["k"] = {3, {}};
+  EXPECT_EQ(Play("param int k = 2\n" + Local("        n = k\n"), fleet).messages,
+            std::vector<std::string>{"`k` has a value already"});
+}
+
+// The fleet's value comes before what an assumption would give; that the assumption does not hold is said.
+TEST(Simulation, ValuesOfTheFleetComeBeforeDerivedOnes) {
+  Fleet fleet = Masses(1, 0.1);
+  fleet.initial["m"] = {1, {}};
+  const Outcome outcome = Play(
+      "local:\n    int m\nGo:\n    eff:\n        m = m\nassume initially: m == 2\n"
+      "invariant one: forall i in ID: m[i] == 1\n",
+      fleet);
+  ASSERT_EQ(outcome.report.violations.size(), 1U);
+  EXPECT_TRUE(outcome.report.violations[0].what.starts_with("assumption"));
 }
 
 TEST(Simulation, TheSameSeedGivesTheSameRun) {
