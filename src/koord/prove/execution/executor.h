@@ -158,7 +158,8 @@ class Executor {
   TermId Of(const Additive& fold, TermId robot);
   void OneOrTwo(const std::function<TermId(TermId)>& is_so, TermId first, TermId another);
   void Signs(const Additive& sum);
-  void Changes(const Additive& a, const Additive& b);
+  void Changes(const Additive& from, const Additive& to);
+  void Grows(const Additive& from, const Additive& to);
   void Differences(const Additive& a, const Additive& b);
   TermId MakeArray(ExprId id, const lang::Expr& e);
   TermId Filled(TermId whole, TypeId type, TermId value);

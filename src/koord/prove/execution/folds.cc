@@ -72,10 +72,14 @@ void Executor::Compare(FoldKind kind, ExprId id, const Additive& now) {
   for (const Additive& before : others) {
     if (!compared_.emplace(std::min(before.value, now.value), std::max(before.value, now.value)).second)
       continue;
-    if (kind == FoldKind::kCount)
+    if (kind == FoldKind::kCount) {
       Changes(before, now);
-    else
+      Changes(now, before);
+    } else {
       Differences(before, now);
+      Grows(before, now);
+      Grows(now, before);
+    }
   }
   others.push_back(now);
 }
@@ -109,29 +113,33 @@ void Executor::OneOrTwo(const std::function<TermId(TermId)>& is_so, TermId first
                          arena_.And(is_so(first), arena_.Or(arena_.Eq(robot, first), another)))));
 }
 
-// Of two counts: it grows only if a robot joins, by one if a second one does not, and as a whole if none leaves; and the
-// other way round.
-void Executor::Changes(const Additive& a, const Additive& b) {
-  for (const auto& [from, to] : {std::pair(&a, &b), std::pair(&b, &a)}) {
-    const TermId one = arena_.IntNumber(1);
-    const TermId first = SomeRobot("joins");
-    const TermId second = SomeRobot("joins too");
-    const TermId leaver = SomeRobot("leaves");
-    const auto joins = [&](TermId r) {
-      return arena_.And({vocabulary_.IsRobot(r), arena_.Not(Of(*from, r)), Of(*to, r)});
-    };
-    const TermId leaves =
-        arena_.And({vocabulary_.IsRobot(leaver), Of(*from, leaver), arena_.Not(Of(*to, leaver))});
-    const TermId longer = arena_.Add(from->value, one);
-    const TermId another = arena_.And(joins(second), arena_.Not(arena_.Eq(first, second)));
-    OneOrTwo(joins, first, another);
-    folds_.push_back(arena_.Or(arena_.Le(to->value, from->value), joins(first)));
-    folds_.push_back(arena_.Or(arena_.Le(to->value, longer), another));
-    folds_.push_back(arena_.Or({arena_.Not(joins(first)), arena_.Le(longer, to->value), leaves}));
-  }
+// Of two counts: the later grows only if a robot joins, by one if a second one does not, and as a whole if none leaves.
+void Executor::Changes(const Additive& from, const Additive& to) {
+  const TermId first = SomeRobot("joins");
+  const TermId second = SomeRobot("joins too");
+  const TermId leaver = SomeRobot("leaves");
+  const auto joins = [&](TermId r) {
+    return arena_.And({vocabulary_.IsRobot(r), arena_.Not(Of(from, r)), Of(to, r)});
+  };
+  const TermId leaves =
+      arena_.And({vocabulary_.IsRobot(leaver), Of(from, leaver), arena_.Not(Of(to, leaver))});
+  const TermId longer = arena_.Add(from.value, arena_.IntNumber(1));
+  const TermId another = arena_.And(joins(second), arena_.Not(arena_.Eq(first, second)));
+  OneOrTwo(joins, first, another);
+  folds_.push_back(arena_.Or(arena_.Le(to.value, from.value), joins(first)));
+  folds_.push_back(arena_.Or(arena_.Le(to.value, longer), another));
+  folds_.push_back(arena_.Or({arena_.Not(joins(first)), arena_.Le(longer, to.value), leaves}));
 }
 
-// Of two sums: they differ only if a part does, by what it differs if no second one does, and as all parts do.
+// Of two sums: the later grows only if a part does.
+void Executor::Grows(const Additive& from, const Additive& to) {
+  const TermId grows = SomeRobot("grows");
+  folds_.push_back(
+      arena_.Or(arena_.Le(to.value, from.value),
+                arena_.And(vocabulary_.IsRobot(grows), arena_.Lt(Of(from, grows), Of(to, grows)))));
+}
+
+// Of two sums: they differ only if a part does, and by what it differs if no second one does.
 void Executor::Differences(const Additive& a, const Additive& b) {
   const TermId first = SomeRobot("differs");
   const TermId second = SomeRobot("differs too");
@@ -143,12 +151,6 @@ void Executor::Differences(const Additive& a, const Additive& b) {
   folds_.push_back(arena_.Or(arena_.Eq(a.value, b.value), differs(first)));
   folds_.push_back(
       arena_.Or(arena_.Eq(arena_.Sub(b.value, a.value), arena_.Sub(Of(b, first), Of(a, first))), another));
-  for (const auto& [from, to] : {std::pair(&a, &b), std::pair(&b, &a)}) {
-    const TermId grows = SomeRobot("grows");
-    folds_.push_back(
-        arena_.Or(arena_.Le(to->value, from->value),
-                  arena_.And(vocabulary_.IsRobot(grows), arena_.Lt(Of(*from, grows), Of(*to, grows)))));
-  }
 }
 
 TermId Executor::Folded(FoldKind kind, const std::vector<TermId>& values) {
