@@ -6,6 +6,20 @@
 
 namespace rondo::lang {
 
+namespace {
+
+// The parts of a conjunction.
+void Conjuncts(const ExprPool& pool, ExprId id, std::vector<ExprId>& out) {
+  const Expr& e = pool[id];
+  if (e.kind == ExprKind::kBinary && e.text == "and") {
+    for (const ExprId arg : e.args) Conjuncts(pool, arg, out);
+  } else {
+    out.push_back(id);
+  }
+}
+
+}  // namespace
+
 bool MentionsName(const ExprPool& pool, ExprId expr, const std::vector<std::string>& names) {
   const Expr& e = pool[expr];
   if (e.kind == ExprKind::kName && std::ranges::find(names, e.text) != names.end()) return true;
@@ -13,6 +27,16 @@ bool MentionsName(const ExprPool& pool, ExprId expr, const std::vector<std::stri
          std::ranges::any_of(e.binders, [&](const Binder& b) {
            return b.domain.valid() && MentionsName(pool, b.domain, names);
          });
+}
+
+std::vector<ExprId> SuppositionsOf(const ExprPool& pool, ExprId body, bool forall) {
+  std::vector<ExprId> parts;
+  while (forall && pool[body].kind == ExprKind::kBinary && pool[body].text == "implies") {
+    Conjuncts(pool, pool[body].args[0], parts);
+    body = pool[body].args[1];
+  }
+  if (!forall) Conjuncts(pool, body, parts);
+  return parts;
 }
 
 std::optional<RangeDomain> RangeOf(const ExprPool& pool, const Expr& quantifier) {

@@ -12,6 +12,10 @@ namespace rondo::lang {
 /// Reports whether an expression uses one of these names.
 bool MentionsName(const ExprPool& pool, ExprId expr, const std::vector<std::string>& names);
 
+/// Returns what a quantifier supposes of its variables, in the order in which it is asked: the parts of A in
+/// `forall x: A implies B` (and of A2 in B, if that is `A2 implies B2`), of all of the body in `exists x: A`.
+std::vector<ExprId> SuppositionsOf(const ExprPool& pool, ExprId body, bool forall);
+
 /// Holds what `forall c in range(from, to): body` is made of.
 struct RangeDomain {
   ExprId from, to, body;

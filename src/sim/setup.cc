@@ -86,28 +86,17 @@ std::unique_ptr<Team> Run::NewTeam(Functions& functions) {
 bool Run::MakeTeam() {
   team_ = NewTeam(functions_);
   if (team_ == nullptr) return false;
-  for (const auto& part : team_->unchecked()) {
-    report_.unchecked.push_back(part.name);
-    diagnostics_
-        .Report(Kind::kKoordNotChecked, part.span,
-                fmt::format("runs are not checked against `{}`", part.name))
-        .Under(part.reason);
-  }
-  for (const auto& response : team_->responses()) {
-    if (options_.network == nullptr) break;
-    report_.unchecked.push_back(response.name);
-    diagnostics_
-        .Report(Kind::kKoordNotChecked, response.span,
-                fmt::format("runs are not checked against `{}`", response.name))
-        .Under("over a network, rounds last as long as they take");
-  }
+  const auto leave_out = [&](const std::string& name, diag::Span span, const std::string& reason) {
+    report_.unchecked.push_back(name);
+    diagnostics_.Report(Kind::kKoordNotChecked, span, fmt::format("runs are not checked against `{}`", name))
+        .Under(reason);
+  };
+  for (const auto& part : team_->unchecked()) leave_out(part.name, part.span, part.reason);
+  if (options_.network == nullptr) return true;
+  const std::string last = "over a network, rounds last as long as they take";
+  for (const auto& response : team_->responses()) leave_out(response.name, response.span, last);
   for (const auto& promise : team_->promises()) {
-    if (!promise.at_end || options_.network == nullptr) continue;
-    report_.unchecked.push_back(promise.name);
-    diagnostics_
-        .Report(Kind::kKoordNotChecked, promise.span,
-                fmt::format("runs are not checked against `{}`", promise.name))
-        .Under("over a network, rounds last as long as they take");
+    if (promise.at_end) leave_out(promise.name, promise.span, last);
   }
   return true;
 }
@@ -117,9 +106,6 @@ bool Run::MakeRobots() {
   for (size_t r = 0; r < fleet_.robots.size(); ++r) {
     const FleetRobot& robot = fleet_.robots[r];
     auto body = robot.make();
-    if (robot.from.empty()) {
-      for (const auto& [name, value] : robot.parameters) body->Set(name, value);
-    }
     body->Seed(options_.seed * 0x9e3779b97f4a7c15U + 0x51ed2701U * (r + 1));
     body->Place(robot.position, robot.yaw);
     radii.push_back(body->radius());

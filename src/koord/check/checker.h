@@ -125,9 +125,8 @@ class Checker {
   diag::Diagnostics& diagnostics_;
   Model model_;
 
-  std::set<size_t> queues_;          // variables that are declared as a `Queue`
-  std::set<uint32_t> local_queues_;  // and bindings
-  ExprId statement_call_;            // the call that is a statement
+  std::set<size_t> queues_;  // variables that are declared as a `Queue`
+  ExprId statement_call_;    // the call that is a statement
   std::map<std::string, diag::Span> claimed_;
   std::set<std::string> modules_;
   std::map<std::string, std::pair<TypeId, uint32_t>> enum_members_;

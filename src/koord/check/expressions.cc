@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <functional>
 #include <utility>
 
 #include "koord/check/checker.h"
@@ -294,22 +293,8 @@ std::optional<TypeId> Checker::TypeNamed(const std::string& word) const {
 
 // Does what the quantifier's body supposes bound these numbers from both sides?
 bool Checker::Bounds(const lang::Expr& quantifier, const std::vector<std::string>& names) const {
-  std::vector<ExprId> conditions;
-  const std::function<void(ExprId)> collect = [&](ExprId id) {
-    const lang::Expr& e = exprs_[id];
-    if (e.kind == ExprKind::kBinary && e.text == "and") {
-      for (const ExprId arg : e.args) collect(arg);
-    } else {
-      conditions.push_back(id);
-    }
-  };
-  ExprId body = quantifier.args[0];
-  if (quantifier.text == "exists") collect(body);
-  while (quantifier.text == "forall" && exprs_[body].kind == ExprKind::kBinary &&
-         exprs_[body].text == "implies") {
-    collect(exprs_[body].args[0]);
-    body = exprs_[body].args[1];
-  }
+  const std::vector<ExprId> conditions =
+      lang::SuppositionsOf(exprs_, quantifier.args[0], quantifier.text == "forall");
   const auto bounded = [&](const std::string& name, bool above) {
     return std::ranges::any_of(conditions, [&](ExprId id) {
       const lang::Expr& e = exprs_[id];

@@ -66,7 +66,6 @@ TypeId Checker::CallMethod(ExprId id, const lang::Expr& e) {
 // Is it a variable that is declared as a `Queue`? Queues and lists are one type.
 bool Checker::IsQueue(ExprId list) const {
   const Ref ref = model_.RefOf(list);
-  if (ref.kind == RefKind::kBinding) return local_queues_.contains(ref.index);
   const bool item = exprs_[list].kind == ExprKind::kIndex && ref.kind == RefKind::kNone;
   if (item) return IsQueue(exprs_[list].args[0]);
   return (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell) && queues_.contains(ref.index);

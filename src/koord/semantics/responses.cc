@@ -30,7 +30,7 @@ int Responses::Observe(std::span<const Word> state, std::span<Word> waits, size_
       // Where a formula has no value, nobody is judged by it.
       const auto holds = [&](const FormulaCode& formula) {
         const bool value = team_.machine().RunFormula(formula.entry, r);
-        const bool known = !team_.machine().used_default() && team_.machine().fault() == Fault::kNone;
+        const bool known = team_.LastWasDefined();
         undefined_[i] = undefined_[i] || !known;
         return known ? std::optional(value) : std::nullopt;
       };

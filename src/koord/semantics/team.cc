@@ -322,11 +322,13 @@ void Team::Derive(Compiler& compiler, ExprId id) {
   }
 }
 
+bool Team::LastWasDefined() const { return !machine_->used_default() && machine_->fault() == Fault::kNone; }
+
 bool Team::Holds(const FormulaCode& formula, size_t* robot, bool* defined) {
   bool holds = true;
   for (size_t r = 0; r < (formula.per_robot ? robots() : 1); ++r) {
     const bool here = machine_->RunFormula(formula.entry, r);
-    const bool known = !machine_->used_default() && machine_->fault() == Fault::kNone;
+    const bool known = LastWasDefined();
     if (defined != nullptr) *defined = *defined && known;
     if (here) continue;
     if (holds && robot != nullptr) *robot = r;

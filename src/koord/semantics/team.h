@@ -125,6 +125,8 @@ class Team {
   /// @param defined  becomes false if an operation without a value was met on the way; the result then says
   /// nothing about the program.
   bool Holds(const FormulaCode& formula, size_t* robot = nullptr, bool* defined = nullptr);
+  /// Reports whether every operation in the formula that was run last had a value.
+  bool LastWasDefined() const;
   /// Returns the text of a value of log type `type` that a robot wrote to a stream.
   std::string ShowLogged(size_t type, std::span<const Word> value) const;
   TypeId TypeOfVariable(size_t variable) const { return model_.variables[variable].type; }

@@ -203,7 +203,6 @@ class Reader : Tables {
                                : fmt::format("did you mean `{}`?", near));
       return false;
     }
-    robot.make = [name = robot.model] { return MakeBody(name); };
     if (const auto* parameters = Table(t, "parameters")) {
       const auto known = MakeBody(robot.model)->Parameters();
       for (const auto& [key, node] : *parameters) {
@@ -223,6 +222,11 @@ class Reader : Tables {
         robot.parameters[name] = Number(*parameters, name.c_str(), 0, zero ? 0 : 1e-6, 1e6);
       }
     }
+    robot.make = [name = robot.model, parameters = robot.parameters] {
+      auto body = MakeBody(name);
+      for (const auto& [parameter, value] : parameters) body->Set(parameter, value);
+      return body;
+    };
     return true;
   }
 

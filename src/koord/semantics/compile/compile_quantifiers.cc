@@ -2,25 +2,12 @@
 #include <functional>
 
 #include "koord/semantics/compile/compiler.h"
+#include "lang/expr_queries.h"
 
 namespace rondo::koord::semantics {
 
 using lang::ExprKind;
 using lang::TypeKind;
-
-namespace {
-
-// The parts of a conjunction.
-void Conjuncts(const lang::ExprPool& exprs, ExprId id, std::vector<ExprId>& out) {
-  const lang::Expr& e = exprs[id];
-  if (e.kind == ExprKind::kBinary && e.text == "and") {
-    for (const ExprId arg : e.args) Conjuncts(exprs, arg, out);
-  } else {
-    out.push_back(id);
-  }
-}
-
-}  // namespace
 
 bool Compiler::Mentions(ExprId id, const std::vector<uint32_t>& bindings) const {
   const lang::Expr& e = exprs_[id];
@@ -161,13 +148,7 @@ void Compiler::Loop(const std::vector<Bound>& all, size_t i, ExprId body, bool f
     Emit(Op::kSetFrame, end, 1);
   } else if (model_.types.Is(type, TypeKind::kInt)) {
     // forall x: A implies B asks for the x with A only, exists x: A for those with A.
-    std::vector<ExprId> conditions;
-    ExprId inner = body;
-    while (exprs_[inner].kind == ExprKind::kBinary && exprs_[inner].text == "implies" && forall) {
-      Conjuncts(exprs_, exprs_[inner].args[0], conditions);
-      inner = exprs_[inner].args[1];
-    }
-    if (!forall) Conjuncts(exprs_, body, conditions);
+    const std::vector<ExprId> conditions = lang::SuppositionsOf(exprs_, body, forall);
     std::vector<uint32_t> unbound;
     for (size_t k = i; k < all.size(); ++k) unbound.push_back(all[k].binding);
     std::vector<Limit> lower;
