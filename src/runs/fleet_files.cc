@@ -207,12 +207,23 @@ std::optional<std::string> FromBase64(std::string text) {
   }
 }
 
+// JSON holds texts that are UTF-8 only.
+bool IsText(const std::string& bytes) {
+  try {
+    static_cast<void>(nlohmann::json(bytes).dump());
+    return true;
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 nlohmann::json ToJson(const FileContents& files) {
   nlohmann::json json = nlohmann::json::object();
   for (const auto& [path, bytes] : files) {
-    const bool text = fs::path(path).extension() == ".rondo" || fs::path(path).extension() == ".yaml";
+    const fs::path extension = fs::path(path).extension();
+    const bool text = (extension == ".rondo" || extension == ".yaml") && IsText(bytes);
     json[path] = text ? nlohmann::json{{"text", bytes}} : nlohmann::json{{"base64", ToBase64(bytes)}};
   }
   return json;

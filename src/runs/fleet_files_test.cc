@@ -148,7 +148,8 @@ TEST(FileContentsAsJson, KeepsEveryByte) {
     for (size_t i = 0; i < length; ++i) bytes += static_cast<char>(255 - 37 * i);
     files["map" + std::to_string(length) + ".pgm"] = bytes;
   }
-  EXPECT_EQ(FilesFromJson(ToJson(files)), files);
+  files["map.yaml"] = "# caf\xe9\n";  // no UTF-8
+  EXPECT_EQ(FilesFromJson(nlohmann::json::parse(ToJson(files).dump())), files);
   EXPECT_FALSE(FilesFromJson({{"a.pgm", {{"base64", "a*bc"}}}}));
   EXPECT_FALSE(FilesFromJson({{"a.pgm", 3}}));
   EXPECT_FALSE(FilesFromJson(nlohmann::json::array()));
