@@ -84,10 +84,12 @@ InterruptScope::InterruptScope(const base::StopToken& stop) {
   struct sigaction action {};
   action.sa_handler = OnInterrupt;
   ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGTERM, &action, nullptr);
 }
 
 InterruptScope::~InterruptScope() {
   ::signal(SIGINT, SIG_DFL);
+  ::signal(SIGTERM, SIG_DFL);
   current = nullptr;
 }
 

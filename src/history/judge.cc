@@ -17,8 +17,9 @@ using Place = std::pair<uint64_t, uint64_t>;  // epoch, round
 
 class Check {
  public:
-  Check(koord::semantics::Team& team, const Record& record, const base::StopToken& stop)
-      : team_(team), record_(record), stop_(stop), explainer_(team) {}
+  Check(koord::semantics::Team& team, const Record& record, const Judge::About& about,
+        const base::StopToken& stop)
+      : team_(team), record_(record), about_(about), stop_(stop), explainer_(team) {}
 
   std::vector<Finding> Run() {
     for (size_t i = 0; i < record_.entries.size(); ++i) {
@@ -93,6 +94,7 @@ class Check {
     const auto [it, fresh] = said_.emplace(std::tuple(LifeOf(e), e.epoch, e.round), e.what);
     if (!fresh && record_.texts[it->second] != record_.texts[e.what])
       Say(Wrong::kTwice, fmt::format("{} says two different things in round {}", Of(e), e.round));
+    if (fresh && e.skips) skipped_.insert({e.robot, e.epoch, e.round});
     if (fresh && !e.waits.empty()) waiting_[{e.robot, e.epoch, e.round}] = e.waits;
     if (fresh) spoke_[{LifeOf(e), e.epoch, e.round}] = e.time;
     // What it set before it speaks can be part of what it says.
@@ -150,6 +152,7 @@ class Check {
       const auto it = fell_before_.find({r, e.epoch, e.round - 1});
       if (it != fell_before_.end()) fallen[r] = StateOf(team_, record_.images[it->second]);
     }
+    if (about_) about_(e.epoch, e.round - 1);
     const auto how = explainer_.Explain(from, to, e.round == 1, may_skip, fallen, waits);
     if (!how)
       return Say(
@@ -159,7 +162,9 @@ class Check {
     // Who could act and did not was refused a lock.
     for (uint32_t r = 0; r < record_.robots; ++r) {
       size_t& in_vain = in_vain_[{e.epoch, r}];
-      in_vain = how->idle[r] && how->could_act[r] && !may_skip[r] ? in_vain + 1 : 0;
+      const bool wanted =
+          how->idle[r] && how->could_act[r] && !may_skip[r] && !skipped_.contains({r, e.epoch, e.round - 1});
+      in_vain = wanted ? in_vain + 1 : 0;
       const size_t members = members_.contains(e.epoch) ? members_[e.epoch].size() : record_.robots;
       if (in_vain == members)
         Say(Wrong::kStarved, fmt::format("robot {} wanted to act in {} rounds up to round {}, and never did",
@@ -231,6 +236,7 @@ class Check {
 
   koord::semantics::Team& team_;
   const Record& record_;
+  const Judge::About& about_;
   const base::StopToken& stop_;
   Explainer explainer_;
   size_t at_ = 0;
@@ -248,16 +254,17 @@ class Check {
   std::map<std::tuple<uint32_t, uint64_t, uint64_t>, size_t>
       fell_before_;  // a robot spoke in a round: images
   std::map<std::tuple<uint32_t, uint64_t, uint64_t>, std::vector<uint32_t>>
-      waiting_;                                              // robot, epoch, round: events
-  std::map<uint32_t, uint64_t> last_acted_;                  // by robot: rounds
-  std::map<std::pair<uint64_t, uint32_t>, size_t> in_vain_;  // by epoch and robot: rounds in a row
-  std::vector<size_t> acts_;                                 // entries
+      waiting_;                                                 // robot, epoch, round: events
+  std::set<std::tuple<uint32_t, uint64_t, uint64_t>> skipped_;  // the same: it chose to
+  std::map<uint32_t, uint64_t> last_acted_;                     // by robot: rounds
+  std::map<std::pair<uint64_t, uint32_t>, size_t> in_vain_;     // by epoch and robot: rounds in a row
+  std::vector<size_t> acts_;                                    // entries
 };
 
 }  // namespace
 
 std::vector<Finding> Judge::Check(const Record& record, const base::StopToken& stop) {
-  history::Check check(team_, record, stop);
+  history::Check check(team_, record, about_, stop);
   std::vector<Finding> found = check.Run();
   rounds_ = check.rounds();
   return found;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/stop.h"
@@ -38,7 +40,9 @@ struct Finding {
 class Judge {
  public:
   /// @param team  compiled for as many robots as the records have; only the judge uses it meanwhile.
-  explicit Judge(koord::semantics::Team& team) : team_(team) {}
+  /// @param about  is told of which round the functions of the program are asked next, if somebody has to know.
+  using About = std::function<void(uint64_t epoch, uint64_t round)>;
+  explicit Judge(koord::semantics::Team& team, About about = {}) : team_(team), about_(std::move(about)) {}
 
   /// Returns everything that is wrong with a record, in the order of its lines; nothing if the robots kept
   /// what docs/runtime.md promises. Cost: one look at each entry, and one explanation for each state.
@@ -48,6 +52,7 @@ class Judge {
 
  private:
   koord::semantics::Team& team_;
+  About about_;
   size_t rounds_ = 0;
 };
 

@@ -52,6 +52,7 @@ struct Entry {
       0;  ///< what the clock on the robot's wall said, which may step; for people, not for the judge
   /// kContributed: events that it leaves out because a function is not finished.
   std::vector<uint32_t> waits = {};
+  bool skips = false;  ///< kContributed: it chose to do nothing, though it could
 };
 
 /// Names one life of a robot.

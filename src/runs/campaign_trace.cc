@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/counted.h"
+#include "base/hex.h"
 #include "koord/semantics/story.h"
 #include "runs/campaign_teams.h"
 #include "runs/trace_copy.h"
@@ -21,12 +22,6 @@ using history::Kind;
 using nlohmann::json;
 namespace campaign = sim::campaign;
 
-std::string Hex(const std::vector<uint8_t>& bytes) {
-  std::string text;
-  for (const uint8_t b : bytes) text += fmt::format("{:02x}", b);
-  return text;
-}
-
 json LineOf(const history::Record& record, const Entry& e, koord::semantics::Team& team) {
   json line{{"robot", e.robot}, {"life", e.incarnation}, {"did", history::Name(e.kind)},
             {"epoch", e.epoch}, {"round", e.round},      {"stamp", static_cast<double>(e.stamp) * 1e-9}};
@@ -39,7 +34,7 @@ json LineOf(const history::Record& record, const Entry& e, koord::semantics::Tea
       if (e.what != history::kNothing) line["state"] = state();
       break;
     case Kind::kContributed:
-      line["frame"] = Hex(record.texts[e.what]);
+      line["frame"] = base::Hex(record.texts[e.what]);
       for (const uint32_t event : e.waits) line["waits"].push_back(team.events()[event].def->name);
       break;
     case Kind::kActed:

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "base/parallel.h"
-#include "base/uniform.h"
 #include "sim/run.h"
+#include "sim/scanner.h"
 
 namespace rondo::sim {
 
@@ -30,46 +29,15 @@ void Run::Sense() {
   }
 }
 
-// What a sensor of a robot reads now.
+// What a sensor of a robot reads now; of scans, those since it was asked last.
 void Run::Sense(const Port& port, size_t r, Heap& heap, Word* at) const {
-  const Body& body = *bodies_[r];
-  const auto point = [&](const Point& p) {
-    for (size_t i = 0; i < 3; ++i) at[i] = FromFloat(p[i] + 0.0);
-  };
-  if (const auto& own = port.own[r]) {
-    std::array<double, 3> values{};
-    body.ReadPort(*own, std::span(values).first(own->kind == BodyPort::Kind::kPoint ? 3 : 1));
-    if (own->kind == BodyPort::Kind::kPoint) return point(values);
-    *at = own->kind == BodyPort::Kind::kBool ? static_cast<Word>(values[0] != 0) : FromFloat(values[0] + 0.0);
-    return;
+  if (port.role != PortRole::kScans) return ReadSensor(port, r, *bodies_[r], at);
+  std::vector<Word> words;
+  for (const Seen& seen : seen_[r]) {
+    for (const double x : seen.from) words.push_back(FromFloat(x + 0.0));
+    words.push_back(EncodeRays(heap, seen.rays));
   }
-  switch (port.role) {
-    case PortRole::kPosition:
-      point(body.position());
-      break;
-    case PortRole::kVelocity:
-      point(body.velocity());
-      break;
-    case PortRole::kHeading:
-      *at = FromFloat(body.yaw() + 0.0);
-      break;
-    case PortRole::kReached:
-      *at = body.reached();
-      break;
-    case PortRole::kScans: {
-      std::vector<Word> words;
-      for (const Seen& seen : seen_[r]) {
-        for (const double x : seen.from) words.push_back(FromFloat(x + 0.0));
-        words.push_back(EncodeRays(heap, seen.rays));
-      }
-      *at = heap.Intern(words);
-      break;
-    }
-    case PortRole::kTarget:
-    case PortRole::kPath:
-    case PortRole::kOwn:
-      break;
-  }
+  *at = heap.Intern(words);
 }
 
 // How many controller periods from one instant of this kind to the next?
@@ -108,7 +76,7 @@ bool Run::Pass(uint64_t n, double t, double now, bool last) {
     for (size_t r = 0; r < bodies_.size(); ++r) recorder_.Pose(now, r, *bodies_[r]);
   }
   if (p.scans && step_ % p.scan == 0) Scan(now);
-  if (step_ % p.touch == 0 || last) Observe(now);
+  if (step_ % p.touch == 0 || last) touches_->Observe(now);
   if ((step_ % p.monitor == 0 || last) && settled_at_ >= 0) {
     Sense();
     monitor_->During(now, state_, settled_, last && networked_ == nullptr);
@@ -174,27 +142,7 @@ bool Run::Move(uint64_t n, double dt, double t) {
 
 void Run::Scan(double now) {
   std::vector<Rays> all(bodies_.size());
-  const auto work = [&](size_t r) {
-    Rays& rays = all[r];
-    const int beams = fleet_.lidar.beams;
-    rays.first = bodies_[r]->yaw() - std::numbers::pi;
-    rays.step = 2 * std::numbers::pi / beams;
-    rays.range = fleet_.lidar.range;
-    rays.distances.resize(static_cast<size_t>(beams));
-    const Point from = bodies_[r]->position();
-    const World others = fleet_.lidar.robots ? Others(bodies_, r) : World{};
-    for (int b = 0; b < beams; ++b) {
-      const double angle = rays.first + b * rays.step;
-      double d = std::min(fleet_.world.Cast(from, angle, rays.range), others.Cast(from, angle, rays.range));
-      if (std::isfinite(d)) {
-        if (fleet_.lidar.noise > 0) d += fleet_.lidar.noise * base::Normal(noise_[r]);
-        if (fleet_.lidar.resolution > 0)
-          d = std::round(d / fleet_.lidar.resolution) * fleet_.lidar.resolution;
-        d = std::max(d, 0.0);
-      }
-      rays.distances[static_cast<size_t>(b)] = d;
-    }
-  };
+  const auto work = [&](size_t r) { all[r] = sim::Scan(fleet_, bodies_, r, noise_[r]); };
   if (bodies_.size() < 16) {
     for (size_t r = 0; r < bodies_.size(); ++r) work(r);
   } else {
@@ -210,33 +158,6 @@ void Run::Scan(double now) {
     seen_[r].push_back({now, bodies_[r]->position(), std::move(all[r])});
     if (settled_at_ < 0) scans_[r].clear();
   }
-}
-
-// Collisions and distances.
-void Run::Observe(double now) {
-  std::vector<Point> positions;
-  for (const auto& body : bodies_) positions.push_back(body->position());
-  contacts_->Move(positions);
-  const auto touching = contacts_->Touching();
-  const std::set<std::pair<int, int>> pairs(touching.begin(), touching.end());
-  const auto name = [&](int who) {
-    if (who >= 0) return fleet_.robots[static_cast<size_t>(who)].name;
-    const auto number = static_cast<size_t>(-1 - who);
-    const size_t boxes = fleet_.world.boxes.size();
-    return number < boxes ? fmt::format("box {}", number) : fmt::format("cylinder {}", number - boxes);
-  };
-  for (const auto& [a, b] : pairs) {
-    if (touching_.contains({a, b})) continue;
-    if (report_.collisions++ == 0) {
-      report_.first_collision = now;
-      report_.first_pair = fmt::format("{} and {}", name(a), name(b));
-    }
-    recorder_.Event(now, {{"event", "collision"}, {"robot", name(a)}, {"with", name(b)}});
-  }
-  touching_ = pairs;
-  if (bodies_.size() > 200) return;
-  report_.least_between_robots = std::min(report_.least_between_robots, contacts_->LeastBetweenRobots());
-  report_.least_to_obstacles = std::min(report_.least_to_obstacles, contacts_->LeastToObstacles());
 }
 
 }  // namespace rondo::sim

@@ -25,6 +25,11 @@ std::vector<bool> Run::Reachable(const GridMap& map, const World& world, const s
 void Run::Finish() {
   report_.violations = monitor_->violations();
   report_.plans = functions_.plans();
+  report_.collisions = touches_->collisions();
+  report_.first_collision = touches_->first();
+  report_.first_pair = touches_->first_pair();
+  report_.least_between_robots = touches_->least_between_robots();
+  report_.least_to_obstacles = touches_->least_to_obstacles();
   if (networked_ != nullptr) {
     for (Violation& v : networked_->violations()) report_.violations.push_back(std::move(v));
     report_.plans = networked_->plans();

@@ -5,8 +5,7 @@
 #include <algorithm>
 
 #include "base/check.h"
-#include "base/mixed.h"
-#include "base/uniform.h"
+#include "sim/choice.h"
 
 namespace rondo::sim {
 
@@ -16,14 +15,8 @@ using koord::semantics::Effect;
 
 cores::Setup Networked::SetupOf(const Fleet& fleet, const SimulationOptions& options) {
   cores::Setup setup;
-  setup.settings.robots = static_cast<uint32_t>(fleet.robots.size());
+  setup.settings = SettingsOf(fleet);
   setup.settings.agreement = setup.settings.session = options.seed;
-  setup.settings.on_loss = fleet.rounds.on_loss;
-  setup.settings.parts = rounds::PartsOf(fleet.rounds.exchange);
-  setup.settings.delta = Nanoseconds(fleet.delta);
-  setup.settings.lease = Nanoseconds(fleet.rounds.lease);
-  setup.settings.stop_time = Nanoseconds(fleet.rounds.stop_time);
-  setup.settings.patience = Nanoseconds(fleet.rounds.patience);
   setup.disks = fleet.rounds.disks;
   setup.seed = options.seed;
   setup.conditions = options.network->conditions;
@@ -48,28 +41,12 @@ Networked::Networked(const koord::Model& model, const Fleet& fleet, const Simula
     m.senses = std::make_unique<Senses>(stage_, m.team->heap());
     m.node = std::make_unique<koord::node::Node>(*m.team, r, m.senses.get(), options.seed);
     m.node->SetChoose([this](uint64_t round, size_t robot, std::span<const Effect> effects) {
-      return Choose(round, robot, effects);
+      return Choose(fleet_, options_.seed, round, robot, effects);
     });
     m.calls = std::make_unique<koord::node::SlowCalls>(*m.functions, *m.team, *m.node, cores_.now());
     m.team->machine().SetHost(m.calls.get());
     m.monitor = std::make_unique<Monitor>(*m.team, diagnostics, [](const Violation&, bool) {});
   }
-}
-
-// Which event a robot runs, as the fleet says; of the values of its `any`, a random one.
-size_t Networked::Choose(uint64_t round, size_t robot, std::span<const Effect> effects) const {
-  std::mt19937_64 random(base::Mixed(options_.seed ^ base::Mixed(round * 1024 + robot)));
-  if (round > 0 && !effects[0].urgent && fleet_.skip > 0 && base::Uniform(random) < fleet_.skip)
-    return effects.size();
-  std::vector<size_t> firsts;  // of the events
-  for (size_t i = 0; i < effects.size(); ++i) {
-    if (i == 0 || effects[i].event != effects[i - 1].event) firsts.push_back(i);
-  }
-  const size_t k = fleet_.policy == Policy::kFirst    ? 0
-                   : fleet_.policy == Policy::kRandom ? random() % firsts.size()
-                                                      : (round + robot) % firsts.size();
-  const size_t end = k + 1 < firsts.size() ? firsts[k + 1] : effects.size();
-  return firsts[k] + random() % (end - firsts[k]);
 }
 
 void Networked::Start(runtime::codec::Bytes store) {

@@ -89,7 +89,6 @@ class Networked : cores::Robots {
   };
 
   static cores::Setup SetupOf(const Fleet& fleet, const SimulationOptions& options);
-  size_t Choose(uint64_t round, size_t robot, std::span<const koord::semantics::Effect> effects) const;
   runtime::rounds::Program& Begin(uint32_t robot) override;
   void Crashed(uint32_t robot) override;
   void Slows(uint32_t robot, cores::Time delay) override;

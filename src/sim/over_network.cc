@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/run.h"
+#include "sim/start.h"
 
 namespace rondo::sim {
 
@@ -13,8 +14,9 @@ using koord::node::Node;
 // The world goes on in steps of the controllers; between them, whatever the network brings happens.
 void Run::OverNetwork(double end) {
   networked_ = std::make_unique<Networked>(
-      model_, fleet_, options_, bodies_, [this](Functions& functions) { return NewTeam(functions); },
-      diagnostics_, static_cast<Stage&>(*this));
+      model_, fleet_, options_, bodies_,
+      [this](Functions& functions) { return TeamOf(model_, fleet_, functions, diagnostics_); }, diagnostics_,
+      static_cast<Stage&>(*this));
   fallen_.resize(bodies_.size());
   runtime::codec::Bytes before;
   store_->Save(before);
@@ -92,7 +94,7 @@ void Run::Committed(uint64_t round, const Node& node) {
 void Run::Acts(size_t robot, Heap& heap, const Node& node, const std::vector<koord::node::Cell>& commands) {
   const double t = networked_->now();
   for (const Port& port : ports_) {
-    if (!IsActuator(port)) continue;
+    if (!IsActuator(model_, port)) continue;
     const bool driven = std::ranges::any_of(
         commands, [&](const koord::node::Cell& cell) { return cell.variable == port.variable; });
     if (driven) Obey(port, robot, heap, node.state().data() + At(port, robot), t);
@@ -107,7 +109,7 @@ void Run::FallsBack(size_t robot, const Node& node, const std::vector<koord::nod
   fallen_[robot] = covered;
   Sets(robot, node, node.real(), covered);
   for (const Port& port : ports_) {
-    if (model_.FallsBack(port.variable) && IsActuator(port))
+    if (model_.FallsBack(port.variable) && IsActuator(model_, port))
       Obey(port, robot, team_->heap(), state_.data() + At(port, robot), networked_->now());
   }
 }

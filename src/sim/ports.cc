@@ -7,6 +7,7 @@
 namespace rondo::sim {
 
 using koord::VariableKind;
+using koord::semantics::FromFloat;
 using lang::TypeKind;
 
 namespace {
@@ -124,6 +125,64 @@ class Finder {
 };
 
 }  // namespace
+
+bool IsActuator(const koord::Model& model, const Port& port) {
+  return model.variables[port.variable].kind == VariableKind::kActuator;
+}
+
+void ReadSensor(const Port& port, size_t robot, const Body& body, Word* at) {
+  if (const auto& own = port.own[robot]) {
+    std::array<double, 3> values{};
+    const bool point = own->kind == BodyPort::Kind::kPoint;
+    body.ReadPort(*own, std::span(values).first(point ? 3 : 1));
+    if (point) return WritePoint(values, at);
+    *at = own->kind == BodyPort::Kind::kBool ? static_cast<Word>(values[0] != 0) : FromFloat(values[0] + 0.0);
+    return;
+  }
+  switch (port.role) {
+    case PortRole::kPosition:
+      return WritePoint(body.position(), at);
+    case PortRole::kVelocity:
+      return WritePoint(body.velocity(), at);
+    case PortRole::kHeading:
+      *at = FromFloat(body.yaw() + 0.0);
+      return;
+    case PortRole::kReached:
+      *at = static_cast<Word>(body.reached());
+      return;
+    case PortRole::kScans:
+    case PortRole::kTarget:
+    case PortRole::kPath:
+    case PortRole::kOwn:
+      return;
+  }
+}
+
+void ReadAtRest(const koord::Model& model, const Port& port, size_t robot, const Body& body, Heap& heap,
+                Word* at) {
+  if (port.role == PortRole::kScans) {
+    *at = heap.Intern(std::vector<Word>());
+  } else if (port.own[robot] || !IsActuator(model, port)) {
+    ReadSensor(port, robot, body, at);
+  } else if (port.role == PortRole::kPath) {
+    *at = EncodePath(heap, {body.position()});
+  } else {
+    WritePoint(body.position(), at);
+  }
+}
+
+void Obey(const Port& port, size_t robot, const Heap& heap, const Word* at, Body& body) {
+  if (const auto& own = port.own[robot]) {
+    std::array<double, 3> values{};
+    const size_t parts = own->kind == BodyPort::Kind::kPoint ? 3 : 1;
+    for (size_t i = 0; i < parts; ++i) values[i] = koord::semantics::ToFloat(at[i]);
+    body.WritePort(*own, std::span(values).first(parts));
+  } else if (port.role == PortRole::kPath) {
+    body.Follow(DecodePath(heap, *at));
+  } else if (const Point target = ReadPoint(at); body.path() != std::vector<Point>{target}) {
+    body.Follow({target});
+  }
+}
 
 std::vector<Port> FindPorts(const koord::Model& model, const std::vector<FleetRobot>& robots,
                             diag::Diagnostics& diagnostics) {

@@ -6,6 +6,7 @@
 #include "diag/diagnostic.h"
 #include "koord/check/model.h"
 #include "sim/fleet/fleet.h"
+#include "sim/functions/encoding.h"
 
 /// Connects the ports of programs with simulated bodies.
 namespace rondo::sim {
@@ -33,5 +34,17 @@ struct Port {
 /// Returns the ports of the program, by name and type. Reports each one that a robot lacks.
 std::vector<Port> FindPorts(const koord::Model& model, const std::vector<FleetRobot>& robots,
                             diag::Diagnostics& diagnostics);
+
+/// Reports whether the program sets that port.
+bool IsActuator(const koord::Model& model, const Port& port);
+
+/// Puts what a sensor reads of a body into the words at `at`; scans, which bodies do not have, stay as they are.
+void ReadSensor(const Port& port, size_t robot, const Body& body, Word* at);
+/// Puts what a port has while a body is at rest into the words at `at`: no scans; actuators that hold it where it is.
+void ReadAtRest(const koord::Model& model, const Port& port, size_t robot, const Body& body, Heap& heap,
+                Word* at);
+/// Commands a body as the words of an actuator say. A path is a new command each time that it is written; a target is
+/// one if it is another.
+void Obey(const Port& port, size_t robot, const Heap& heap, const Word* at, Body& body);
 
 }  // namespace rondo::sim

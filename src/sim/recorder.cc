@@ -18,7 +18,9 @@ uint16_t Recorder::Channel(const std::string& topic, const trace::Schema& schema
 }
 
 void Recorder::Run(const json& run) {
-  if (on()) writer_->Message(Channel("/rondo/run", trace::kRecord, "json"), 0, run.dump());
+  if (on())
+    writer_->Message(Channel("/rondo/run", trace::kRecord, "json"), 0,
+                     run.dump(-1, ' ', false, json::error_handler_t::replace));
 }
 
 void Recorder::Round(double time, const json& round) {

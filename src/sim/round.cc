@@ -108,36 +108,16 @@ void Run::Command(const std::vector<RoundExecution::Write>& writes, double t) {
     for (size_t p = 0; p < ports_.size(); ++p) {
       const auto& place = layout[ports_[p].variable];
       if (offset < place.at || offset >= place.at + place.width) continue;
-      if (IsActuator(ports_[p])) told.emplace(robot, p);
+      if (IsActuator(model_, ports_[p])) told.emplace(robot, p);
     }
   }
   for (const auto& [robot, p] : told)
     Obey(ports_[p], robot, team_->heap(), state_.data() + At(ports_[p], robot), t);
 }
 
-bool Run::IsActuator(const Port& port) const {
-  return model_.variables[port.variable].kind == koord::VariableKind::kActuator;
-}
-
-// A path is a new command each time that it is written; a target is one if it is another.
 void Run::Obey(const Port& port, size_t robot, const Heap& heap, const Word* at, double t) {
-  if (const auto& own = port.own[robot]) {
-    std::array<double, 3> values{};
-    const size_t parts = own->kind == BodyPort::Kind::kPoint ? 3 : 1;
-    for (size_t i = 0; i < parts; ++i) values[i] = koord::semantics::ToFloat(at[i]);
-    bodies_[robot]->WritePort(*own, std::span(values).first(parts));
-    return;
-  }
-  std::vector<Point> path;
-  if (port.role == PortRole::kPath) {
-    path = DecodePath(heap, *at);
-    recorder_.Path(t, robot, path);
-  } else {
-    path = {{koord::semantics::ToFloat(at[0]), koord::semantics::ToFloat(at[1]),
-             koord::semantics::ToFloat(at[2])}};
-    if (path == bodies_[robot]->path()) return;
-  }
-  bodies_[robot]->Follow(std::move(path));
+  if (port.role == PortRole::kPath && !port.own[robot]) recorder_.Path(t, robot, DecodePath(heap, *at));
+  sim::Obey(port, robot, heap, at, *bodies_[robot]);
 }
 
 // The shared map, if the program has one.

@@ -15,6 +15,7 @@
 #include "sim/ports.h"
 #include "sim/recorder.h"
 #include "sim/simulation.h"
+#include "sim/touches.h"
 
 /// Carries out simulations; only the sources of the simulator include it.
 namespace rondo::sim {
@@ -39,15 +40,9 @@ class Run : Stage {
 
  private:
   // Before the first round.
-  std::optional<std::vector<Word>> ValueOf(const std::string& name, const FleetValue& given, size_t variable);
-  bool IsForEach(const FleetValue& given, size_t variable) const;
-  void ForEach(const std::string& name, const FleetValue& given, size_t variable);
-  int Find(const std::string& name) const;
-  std::unique_ptr<koord::semantics::Team> NewTeam(Functions& functions);
   bool MakeTeam();
   bool MakeRobots();
   bool Start();
-  bool BeforeInit();
   bool Initialise();
   void Record();
 
@@ -56,7 +51,6 @@ class Run : Stage {
   std::vector<size_t> Order(uint64_t k);
   uint32_t Choose(std::span<const uint32_t> enabled, uint64_t k, size_t robot);
   void Command(const std::vector<koord::semantics::RoundExecution::Write>& writes, double t);
-  bool IsActuator(const Port& port) const;
   void Obey(const Port& port, size_t robot, const Heap& heap, const Word* at, double t);
   void Say(double t, size_t robot, const std::string& text);
   void Fails(size_t robot, const koord::node::Failure& failure, double t);
@@ -75,7 +69,6 @@ class Run : Stage {
   void Environment(double t);
   bool Move(uint64_t n, double dt, double t);
   void Scan(double now);
-  void Observe(double now);
   void WatchModels(double now);
 
   // Rounds over a network.
@@ -121,9 +114,8 @@ class Run : Stage {
     bool scans = false;
   };
   Periods periods_;
-  std::unique_ptr<Contacts> contacts_;
+  std::unique_ptr<Touches> touches_;
   std::unique_ptr<Monitor> monitor_;
-  std::set<std::pair<int, int>> touching_;
   std::unique_ptr<Networked> networked_;
   std::unique_ptr<koord::node::Node> store_;            // the last that is final, for the monitor
   std::vector<std::vector<koord::node::Cell>> fallen_;  // by robot: actuators that are not as the store says

@@ -14,11 +14,16 @@ constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 
 class Reader {
  public:
-  Reader(std::string_view file, const std::function<bool(const Message&)>& visit)
-      : file_(file), visit_(visit) {}
+  Reader(std::string_view file, const std::function<bool(const Message&)>& visit, bool left)
+      : file_(file), visit_(visit), left_(left) {}
 
   base::Result<bool> Run() {
     if (!file_.starts_with(kMagic)) return base::Error{"this is not an MCAP file"};
+    if (left_) {
+      Cursor cursor(file_.substr(kMagic.size()));
+      if (!Records(cursor, 0)) return base::Error{problem_};
+      return true;
+    }
     if (file_.size() < 2 * kMagic.size() || !file_.ends_with(kMagic))
       return base::Error{"the file is cut off: it does not end as an MCAP file does"};
     Cursor cursor(file_.substr(kMagic.size(), file_.size() - 2 * kMagic.size()));
@@ -41,6 +46,7 @@ class Reader {
       const auto op = cursor.Take<uint8_t>();
       const auto size = cursor.Take<uint64_t>();
       const auto content = size ? cursor.Take(*size) : std::nullopt;
+      if ((!op || !content) && left_ && depth == 0) return true;
       if (!op || !content) return Bad("a record is cut off", before);
       if (!One(*op, *content, depth)) return problem_.empty() ? Bad("a record is damaged", before) : false;
     }
@@ -107,6 +113,7 @@ class Reader {
   };
   std::string_view file_;
   const std::function<bool(const Message&)>& visit_;
+  const bool left_;
   std::map<uint16_t, std::string_view> schemas_;
   std::map<uint16_t, Channel> channels_;
   bool more_ = true;
@@ -117,7 +124,12 @@ class Reader {
 }  // namespace
 
 base::Result<bool> ForEachMessage(std::string_view file, const std::function<bool(const Message&)>& visit) {
-  return Reader(file, visit).Run();
+  return Reader(file, visit, false).Run();
+}
+
+base::Result<bool> ForEachMessageLeft(std::string_view file,
+                                      const std::function<bool(const Message&)>& visit) {
+  return Reader(file, visit, true).Run();
 }
 
 base::Result<std::string> ReadTrace(const std::string& path) {

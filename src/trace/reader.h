@@ -24,6 +24,10 @@ struct Message {
 ///
 /// @error with the offset in bytes, if the file is not a complete MCAP file (MCAP specification, version 0).
 base::Result<bool> ForEachMessage(std::string_view file, const std::function<bool(const Message&)>& visit);
+/// Does the same with a file whose writer was killed: as far as its records are whole. @error if it is no MCAP file, or
+/// a whole record is damaged.
+base::Result<bool> ForEachMessageLeft(std::string_view file,
+                                      const std::function<bool(const Message&)>& visit);
 
 /// Returns the bytes of a trace. @error when it cannot be read, or is larger than 4 GiB.
 base::Result<std::string> ReadTrace(const std::string& path);

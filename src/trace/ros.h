@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "ros/message.h"
 #include "trace/writer.h"
 
-/// ROS 2 messages as CDR (little endian), and their definitions. Lengths in metres, angles in radians, frame
+/// What runs show, as ROS 2 messages in CDR. Lengths in metres, angles in radians, frame
 /// `world` unless said otherwise (REP-103). Times: nanoseconds since the start of the run.
 namespace rondo::trace {
 
@@ -16,6 +17,9 @@ struct Pose {
   std::array<double, 3> position{};            ///< x, y, z in metres
   std::array<double, 4> rotation{0, 0, 0, 1};  ///< unit quaternion x, y, z, w
 };
+
+/// Returns how messages of a type are written in traces.
+Schema SchemaOf(const ros::Message& message);
 
 /// Define the messages that the functions below write.
 extern const Schema kPoseStamped;

@@ -148,6 +148,11 @@ void Writer::Message(uint16_t channel, uint64_t time, std::string_view bytes) {
   if (chunk_.size() >= kChunk) Flush();
 }
 
+void Writer::Keep() {
+  Flush();
+  failed_ = std::fflush(file_) != 0 || failed_;
+}
+
 void Writer::Flush() {
   if (chunk_.empty()) return;
   ChunkIndex index{chunk_start_, chunk_end_, offset_, 0, 0, chunk_.size(), {}};

@@ -43,6 +43,8 @@ class Writer {
   /// Adds a message. `time`: nanoseconds since the start of the run; must not decrease. What cannot be
   /// written is told by `Finish`.
   void Message(uint16_t channel, uint64_t time, std::string_view bytes);
+  /// Puts what was said so far where a crash of this process does not reach it: into the `.partial` file.
+  void Keep();
   /// Completes the file and gives it its name. @error if anything could not be written.
   base::Result<bool> Finish();
   uint64_t messages() const { return messages_; }

@@ -87,11 +87,12 @@ void Node::See(uint64_t round) {
   inputs_.clear();
   Writer writer(inputs_);
   const std::vector<Cell>& apart = commands_.Tell(state_);
-  writer.Number(cells_.sensors().size() + apart.size());
+  writer.Number((blind_ ? 0 : cells_.sensors().size()) + apart.size());
   const auto tell = [&](Cell cell, std::span<const Word> words) {
     cells_.Encode(cell, robot_, state_, words, writer);
   };
   for (const Cell cell : cells_.sensors()) {
+    if (blind_) break;
     const std::span<Word> words(seen_.data() + cells_.Address(cell, robot_), cells_.Width(cell));
     if (sensors_ != nullptr) sensors_->Read(robot_, round, cell, words);
     tell(cell, words);
@@ -116,19 +117,29 @@ void Node::Offer(const Effect& effect) {
 
 void Node::Contribute(uint64_t round, Bytes& out) {
   round_ = round;
+  offers_ = 0;
+  failed_.reset();
+  waits_.clear();
+  skips_ = false;
+  blind_ = round > 0 && sensors_ != nullptr && !sensors_->Usable(robot_, round);
   See(round);
+  if (blind_) {
+    for (uint32_t e = 0; e < team_.events().size(); ++e) waits_.push_back(e);
+    contribution_.inputs = inputs_;
+    contribution_.alternatives.clear();
+    runtime::rounds::Encode(contribution_, out);
+    return;
+  }
   if (round == 0)
     transition_.PrepareInit(seen_);
   else
     transition_.Prepare(seen_, robot_);
   before_ = seen_;
   const auto effects = transition_.Of(robot_);
-  offers_ = 0;
-  failed_.reset();
   const size_t first = First(round, effects);
+  skips_ = first >= effects.size() && !effects.empty();
   // What `init` asks for has to be there.
   const auto late = [&](const Effect& e) { return e.fault == semantics::Fault::kNotYet && round > 0; };
-  waits_.clear();
   for (const Effect& effect : effects) {
     if (late(effect)) waits_.push_back(effect.event);
   }
@@ -204,11 +215,10 @@ void Node::Collect() {
   collect_at_ = 4096 + 2 * team_.heap().words_in_use();
 }
 
-void Node::Save(Bytes& out) const {
+void Node::Save(std::span<const Word> state, Bytes& out) const {
   Writer writer(out);
   const auto put = [&](Cell cell, size_t robot) {
-    cells_.EncodeValueOf(cell, std::span(state_).subspan(cells_.Address(cell, robot), cells_.Width(cell)),
-                         writer);
+    cells_.EncodeValueOf(cell, state.subspan(cells_.Address(cell, robot), cells_.Width(cell)), writer);
   };
   for (const Cell cell : cells_.shared()) put(cell, 0);
   for (size_t r = 0; r < team_.robots(); ++r) {

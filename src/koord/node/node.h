@@ -19,6 +19,9 @@ class Sensors {
   virtual ~Sensors() = default;
   /// Puts the words of a sensor's cell into `words`, which hold the value of the round before.
   virtual void Read(size_t robot, uint64_t round, Cell cell, std::span<Word> words) = 0;
+  /// Reports whether the sensors of a robot can be relied on. While they cannot, it skips, and its sensors stay as they
+  /// were for the team; in round 0, in which nobody skips, what they said last counts.
+  virtual bool Usable(size_t /*robot*/, uint64_t /*round*/) { return true; }
 };
 
 /// Tells what the round did that a node applied last; nothing if its store came from another robot.
@@ -67,7 +70,9 @@ class Node : public runtime::rounds::Program {
   bool Accepts(uint32_t robot, runtime::codec::View inputs,
                std::span<const runtime::rounds::Alternative> alternatives) const override;
   void Apply(uint64_t round, std::span<const runtime::rounds::Turn> turns) override;
-  void Save(runtime::codec::Bytes& out) const override;
+  void Save(runtime::codec::Bytes& out) const override { Save(state_, out); }
+  /// Appends some state of the team, such as `real`, in the same way.
+  void Save(std::span<const Word> state, runtime::codec::Bytes& out) const;
   bool Load(runtime::codec::View bytes) override;
 
   /// Runs the fallbacks of the program on what the sensors read now. Returns the actuators that they belong to, with their
@@ -82,7 +87,12 @@ class Node : public runtime::rounds::Program {
   const Applied& applied() const { return applied_; }
   /// Returns why the event that the robot would have liked best in this round is left out; nothing if it is not.
   const std::optional<Failure>& failed() const { return failed_; }
-  /// Returns the events that are left out in this round because a function is not finished.
+  /// Reports whether the robot chose to skip this round, in which it could do something.
+  bool skips() const { return skips_; }
+  /// Reports whether the robot skips this round because its sensors could not be relied on.
+  bool blind() const { return blind_; }
+  /// Returns the events that are left out in this round because a function is not finished, or, if the robot is blind,
+  /// all.
   const std::vector<uint32_t>& waits() const { return waits_; }
   /// Returns the round of which the robot says, or said last, what it does.
   uint64_t round() const { return round_; }
@@ -116,6 +126,7 @@ class Node : public runtime::rounds::Program {
   std::optional<Failure> failed_;
   std::vector<uint32_t> waits_;
   uint64_t round_ = 0;
+  bool blind_ = false, skips_ = false;
   Commands commands_;
   size_t collect_at_ = 0;  // words of the heap
 

@@ -70,6 +70,10 @@ class Core {
   /// Appends everything that decides what the core does from now on, with moments as they lie from now: cores with the
   /// same description and the same store do the same. For searches (docs/theory.md, "Rounds on robots").
   void Describe(Bytes& out) const;
+  /// Returns when a robot was heard last; nothing if it never was.
+  std::optional<Time> heard(uint32_t robot) const {
+    return peers_[robot].heard ? std::optional(peers_[robot].last) : std::nullopt;
+  }
   /// Returns how many datagrams were refused, by reason.
   const std::array<uint64_t, 5>& refused() const { return refused_; }
 

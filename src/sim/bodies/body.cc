@@ -8,12 +8,6 @@
 
 namespace rondo::sim {
 
-double Distance(const Point& a, const Point& b) {
-  double sum = 0;
-  for (size_t i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum);
-}
-
 double Wrap(double angle) {
   constexpr double kTurn = 2 * std::numbers::pi;
   return angle - kTurn * std::floor((angle + std::numbers::pi) / kTurn);
@@ -43,41 +37,22 @@ bool Body::Advance(double dt, Integrator integrator) {
 
 void Body::Place(const Point& position, double yaw) {
   Prepare();
-  tolerance_ = Value("tolerance");
-  waypoint_tolerance_ = Value("waypoint_tolerance");
-  dwell_ = Value("dwell");
   Reset(position, yaw);
-  path_ = {position};
-  next_ = 0;
-  reached_ = false;
-  dwelt_ = 0;
+  way_.Begin({position}, {Value("tolerance"), Value("waypoint_tolerance"), Value("dwell"), flies()});
 }
 
 void Body::Follow(std::vector<Point> path) {
   if (path.empty()) path = {position()};
-  path_ = std::move(path);
-  next_ = 0;
-  reached_ = false;
-  dwelt_ = 0;
+  way_.Begin(std::move(path));
   NewCommand();
 }
 
 bool Body::Step(double dt, Integrator integrator) {
-  const auto away = [&](const Point& p) {
-    return flies() ? Distance(position(), p) : std::hypot(state_[0] - p[0], state_[1] - p[1]);
-  };
-  while (next_ + 1 < path_.size() && away(path_[next_]) < waypoint_tolerance_) ++next_;
-  const bool last = next_ + 1 == path_.size();
-  Control(path_[next_], last, dt);
+  const Point& next = way_.Next(position());
+  Control(next, way_.last(), dt);
   if (!Advance(dt, integrator)) return false;
   AfterStep();
-  if (last && away(path_.back()) <= tolerance_) {
-    dwelt_ += dt;
-    // Half a period of the controller: sums of periods are not exact.
-    if (dwelt_ + dt / 2 >= dwell_) reached_ = true;
-  } else {
-    dwelt_ = 0;
-  }
+  way_.Pass(position(), dt);
   return true;
 }
 

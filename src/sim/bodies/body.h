@@ -10,14 +10,11 @@
 #include <vector>
 
 #include "sim/bodies/integrator.h"
+#include "sim/bodies/waypoints.h"
 
 /// Models the bodies of simulated robots.
 namespace rondo::sim {
 
-using Point = std::array<double, 3>;  ///< metres, world frame
-
-/// Returns the distance of two points in metres.
-double Distance(const Point& a, const Point& b);
 /// Returns the angle in [-pi, pi) that points the same way; radians.
 double Wrap(double angle);
 
@@ -56,7 +53,7 @@ class Body {
 
   /// Reports whether it arrived at the last point of its path, within its tolerance, and stayed for its dwell
   /// time.
-  bool reached() const { return reached_; }
+  bool reached() const { return way_.reached(); }
   Point position() const { return {state_[0], state_[1], state_[2]}; }
   /// Returns the heading in radians, from the x axis of the world; 0 for what has none.
   virtual double yaw() const { return 0; }
@@ -69,7 +66,7 @@ class Body {
   /// Reports whether it moves in space; else heights of waypoints do not matter.
   virtual bool flies() const { return false; }
   double radius() const { return Value("radius"); }
-  const std::vector<Point>& path() const { return path_; }
+  const std::vector<Point>& path() const { return way_.path(); }
 
   /// Lists the parameters of the model. All models have `radius`, `tolerance`, `waypoint_tolerance` (metres)
   /// and `dwell` (seconds).
@@ -112,13 +109,7 @@ class Body {
 
  private:
   std::map<std::string, double, std::less<>> values_;
-  std::vector<Point> path_;
-  size_t next_ = 0;
-  double dwelt_ = 0;
-  double dwell_ = 0;
-  double tolerance_ = 0;
-  double waypoint_tolerance_ = 0;
-  bool reached_ = false;
+  Waypoints way_;
 };
 
 /// Returns a new body of a model (`BodyModels` lists their names); nullptr for any other name.

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "lang/suggest.h"
+#include "ros/names.h"
 #include "sim/fleet/round_words.h"
 #include "sim/fleet/tables.h"
 #include "sim/world/occupancy_map.h"
@@ -28,7 +30,8 @@ class Reader : Tables {
     const size_t before = diagnostics_.errors();
     const toml::table root = Root();
     if (diagnostics_.errors() != before) return std::move(fleet_);
-    Known(root, {"run", "world", "lidar", "map", "planner", "params", "initial", "rounds", "robot"},
+    Known(root,
+          {"run", "world", "lidar", "map", "planner", "params", "initial", "rounds", "robot", "ros", "ports"},
           "a fleet file");
     if (const auto* run = Table(root, "run")) Run(*run);
     if (const auto* world = Table(root, "world")) ReadWorld(*world);
@@ -46,6 +49,7 @@ class Reader : Tables {
     }
     if (const auto* params = Table(root, "params")) Values(*params, fleet_.params);
     if (const auto* initial = Table(root, "initial")) Values(*initial, fleet_.initial);
+    fleet_.ros = ReadRos(*this, root);
     Robots(root);
     ReadRounds(Table(root, "rounds"));
     return std::move(fleet_);
@@ -230,6 +234,23 @@ class Reader : Tables {
     return true;
   }
 
+  // Where it is on the network.
+  void ReadPlace(const toml::table& t, FleetRobot& robot) {
+    for (const auto& [key, text] :
+         {std::pair("address", &robot.address), {"namespace", &robot.node_namespace}}) {
+      const toml::node* node = t.get(key);
+      if (node == nullptr) continue;
+      *text = node->value<std::string>().value_or("");
+      if (text->empty()) Wrong(At(*node), fmt::format("`{}` must be a text", key));
+      if (t.contains("count"))
+        Wrong(At(*node), fmt::format("`{}` is of one robot: it does not go with `count`", key));
+    }
+    std::string& space = robot.node_namespace;
+    if (space.starts_with('/')) space.erase(0, 1);
+    if (!space.empty() && !ros::IsName(space))
+      Wrong(At(*t.get("namespace")), "a namespace has letters, digits, `_` and `/`");
+  }
+
   void Numbers(const toml::table& t, const char* table, std::map<std::string, double>& values) {
     const auto* numbers = Table(t, table);
     if (numbers == nullptr) return;
@@ -244,7 +265,7 @@ class Reader : Tables {
     ForEach(root, "robot", [&](const toml::table& t) {
       Known(t,
             {"name", "model", "from", "position", "yaw", "parameters", "initial", "count", "columns", "step",
-             "row_step"},
+             "row_step", "address", "namespace"},
             "a robot");
       FleetRobot robot;
       robot.span = At(t);
@@ -257,6 +278,7 @@ class Reader : Tables {
           !robot.name.empty() && std::all_of(robot.name.begin(), robot.name.end(),
                                              [](unsigned char c) { return std::isalnum(c) || c == '_'; });
       if (!good) Wrong(name == nullptr ? robot.span : At(*name), "a name has letters, digits and `_`");
+      ReadPlace(t, robot);
       const size_t count = Whole(t, "count", 1);
       const size_t columns = Whole(t, "columns", count);
       const Point step = ReadPoint(t, "step", {1, 0, 0}, false, {});
@@ -265,6 +287,7 @@ class Reader : Tables {
       for (size_t i = 0; i < count; ++i) {
         robot = first;
         if (t.contains("count")) robot.name = fmt::format("{}{}", first.name, i);
+        if (robot.node_namespace.empty()) robot.node_namespace = robot.name;
         const size_t column = i % columns;
         const size_t row = i / columns;
         for (size_t k = 0; k < 3; ++k)
@@ -287,6 +310,21 @@ class Reader : Tables {
 };
 
 }  // namespace
+
+runtime::rounds::Settings SettingsOf(const Fleet& fleet) {
+  const auto nanoseconds = [](double seconds) {
+    return static_cast<runtime::rounds::Time>(std::llround(seconds * 1e9));
+  };
+  runtime::rounds::Settings settings;
+  settings.robots = static_cast<uint32_t>(fleet.robots.size());
+  settings.on_loss = fleet.rounds.on_loss;
+  settings.parts = runtime::rounds::PartsOf(fleet.rounds.exchange);
+  settings.delta = nanoseconds(fleet.delta);
+  settings.lease = nanoseconds(fleet.rounds.lease);
+  settings.stop_time = nanoseconds(fleet.rounds.stop_time);
+  settings.patience = nanoseconds(fleet.rounds.patience);
+  return settings;
+}
 
 Fleet ReadFleet(const diag::SourceSet& sources, diag::FileId file, diag::Diagnostics& diagnostics,
                 const FleetSurroundings& surroundings) {

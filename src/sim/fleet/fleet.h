@@ -12,6 +12,7 @@
 #include "diag/diagnostic.h"
 #include "runtime/rounds/settings.h"
 #include "sim/bodies/body.h"
+#include "sim/fleet/ros_tables.h"
 #include "sim/world/world.h"
 
 /// Reads fleets: which robots a simulation has, where they are, and how it runs.
@@ -36,7 +37,10 @@ struct FleetRobot {
   double yaw = 0;
   std::map<std::string, double> parameters;
   std::map<std::string, double>
-      initial;  ///< of models in files: states, memory and inputs at the start, SI units
+      initial;          ///< of models in files: states, memory and inputs at the start, SI units
+  std::string address;  ///< of the machine that it is, for `profile = "wifi"`; empty: not said
+  std::string
+      node_namespace;  ///< of its topics, without the `/` in front; its name, unless the fleet says otherwise
   diag::Span span;
   BodyFactory make;
 };
@@ -106,10 +110,14 @@ struct Fleet {
   double cell = 1;             ///< the side of the cells of maps
   double map_range = 0;        ///< how far scans are drawn into maps; 0: the scanner's range
   FleetRounds rounds;
+  FleetRos ros;
   std::vector<FleetRobot> robots;
   std::map<std::string, FleetValue> params;
   std::map<std::string, FleetValue> initial;
 };
+
+/// Returns how the robots of a fleet run their rounds; `self`, `incarnation`, `agreement` and `session` are to be set.
+runtime::rounds::Settings SettingsOf(const Fleet& fleet);
 
 /// Reads a fleet file (TOML). Reports every mistake where it stands; the fleet is of use only without errors.
 /// @param surroundings  without its functions, references to other files are errors.

@@ -57,8 +57,8 @@ const Functions::Entry Functions::kFunctions[] = {
     {"findObs", Shape::kCells, {Shape::kOpaque}, &Functions::FindObstacles},
     {"right", Shape::kBool, {Shape::kOpaque}, &Functions::Right},
     {"true_scan", Shape::kBool, {Shape::kPoint, Shape::kOpaque}, &Functions::TrueScan},
-    {"", Shape::kPath, {Shape::kPoint}, &Functions::Planner},
-    {"", Shape::kPath, {Shape::kPoint, Shape::kCells}, &Functions::PlannerWithObstacles},
+    {"", Shape::kPath, {Shape::kPoint}, &Functions::PlanPath},
+    {"", Shape::kPath, {Shape::kPoint, Shape::kCells}, &Functions::PlanAround},
 };
 
 Functions::Functions(const koord::Model& model, const Fleet& fleet, uint64_t seed)
@@ -99,8 +99,9 @@ void Functions::Log(size_t robot, size_t type, std::span<const Word> value) {
 koord::semantics::Answer Functions::Call(size_t f, size_t robot, std::span<const Word> a,
                                          std::span<Word> result) {
   if (team_ == nullptr || !Knows(f)) return koord::semantics::Answer::kNone;
+  later_ = false;
   (this->*known_[f])(robot, a, result);
-  return koord::semantics::Answer::kValue;
+  return later_ ? koord::semantics::Answer::kLater : koord::semantics::Answer::kValue;
 }
 
 }  // namespace rondo::sim

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +29,15 @@ class Functions final : public koord::semantics::Host {
   koord::semantics::Answer Call(size_t f, size_t robot, std::span<const Word> arguments,
                                 std::span<Word> result) override;
   void Log(size_t robot, size_t type, std::span<const Word> value) override;
+
+  /// Is the answer of a planner: it is not finished, or the path; no path: there is none.
+  struct Planned {
+    bool ready = true;
+    std::optional<std::vector<Point>> path;
+  };
+  using Planner = std::function<Planned(const World& world, const PlanRequest& request)>;
+  /// Sets who plans paths; without one, they are there at once.
+  void SetPlanner(Planner planner) { planner_ = std::move(planner); }
 
   /// Returns what robots wrote to streams since the last call: robot and text.
   std::vector<std::pair<size_t, std::string>> TakeLog() { return std::exchange(log_, {}); }
@@ -57,8 +68,8 @@ class Functions final : public koord::semantics::Host {
   void Right(size_t robot, Arguments a, std::span<Word> result);
   void TrueScan(size_t robot, Arguments a, std::span<Word> result);
   // Behind callable ports.
-  void Planner(size_t robot, Arguments a, std::span<Word> result);
-  void PlannerWithObstacles(size_t robot, Arguments a, std::span<Word> result);
+  void PlanPath(size_t robot, Arguments a, std::span<Word> result);
+  void PlanAround(size_t robot, Arguments a, std::span<Word> result);
   void PlanTo(size_t robot, const Point& target, const World& world, std::span<Word> result);
 
   const koord::Model& model_;
@@ -70,6 +81,8 @@ class Functions final : public koord::semantics::Host {
   double path_clearance_;
   uint64_t plans_ = 0;
   uint64_t failures_ = 0;  ///< of them
+  Planner planner_;
+  bool later_ = false;  ///< the planner of this call is not finished
   std::vector<std::pair<size_t, std::string>> log_;
 };
 

@@ -54,18 +54,21 @@ void Functions::PlanTo(size_t robot, const Point& target, const World& world, st
     for (const double x : p) seed = base::Mixed(seed ^ std::bit_cast<uint64_t>(x + 0.0));
   }
   request.seed = seed + failures_;
+  const World around = fleet_.around_robots ? With(world, Others(*bodies_, robot)) : world;
+  const Planned planned = planner_ ? planner_(around, request) : Planned{true, Plan(around, request)};
+  later_ = !planned.ready;
+  if (later_) return;
   ++plans_;
   // No way: an empty path, which programs test for.
-  const auto path = Plan(fleet_.around_robots ? With(world, Others(*bodies_, robot)) : world, request);
-  if (!path) ++failures_;
-  result[0] = path ? EncodePath(heap(), *path) : 0;
+  if (!planned.path) ++failures_;
+  result[0] = planned.path ? EncodePath(heap(), *planned.path) : 0;
 }
 
-void Functions::Planner(size_t robot, Arguments a, std::span<Word> result) {
+void Functions::PlanPath(size_t robot, Arguments a, std::span<Word> result) {
   PlanTo(robot, ReadPoint(a.data()), fleet_.world, result);
 }
 
-void Functions::PlannerWithObstacles(size_t robot, Arguments a, std::span<Word> result) {
+void Functions::PlanAround(size_t robot, Arguments a, std::span<Word> result) {
   World world;
   world.low = fleet_.world.low;
   world.high = fleet_.world.high;

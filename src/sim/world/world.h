@@ -16,6 +16,7 @@ namespace rondo::sim {
 struct Box {
   Point centre{};
   Point size{};
+  friend bool operator==(const Box&, const Box&) = default;
 };
 /// Represents a cylinder whose axis is parallel to the z axis of W: its centre, radius and height, in metres.
 /// It reaches half its height above and below the centre.

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <condition_variable>
 #include <memory>
-#include <mutex>
 #include <vector>
 
+#include "transport/mailbox.h"
 #include "transport/transport.h"
 
 /// Carries datagrams between the threads of one process.
@@ -22,13 +21,6 @@ class Hub {
 
  private:
   class Way;
-  struct Mailbox {
-    std::mutex mutex;
-    std::condition_variable arrived;
-    std::vector<runtime::codec::Bytes> ring;  // keeps its memory
-    size_t first = 0, waiting = 0;
-  };
-
   std::vector<std::unique_ptr<Mailbox>> mailboxes_;
 };
 

@@ -23,6 +23,8 @@ class Machine {
     state_.memory = memory;
     state_.old = old == nullptr ? memory : old;
   }
+  /// Returns the state that was set last.
+  const Word* memory() const { return state_.memory; }
   /// Sets who computes external functions and receives what is logged; nullptr: nobody.
   void SetHost(Host* host) { state_.host = host; }
   /// Chooses for `any`: returns a number below `possibilities`. Without a chooser, `any` takes the first.

@@ -1,0 +1,168 @@
+#include "deploy/judge_logs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "koord/node/slow_calls.h"
+#include "sim/monitor.h"
+
+namespace rondo::deploy {
+
+using history::Entry;
+using history::Kind;
+using koord::semantics::Answer;
+
+namespace {
+
+// Functions answer what they answered on the robots; what is asked of no port is computed again.
+class Answers final : public koord::semantics::Host {
+ public:
+  Answers(Replica& replica, const koord::Model& model, const FleetRecord& record)
+      : replica_(replica), model_(model), record_(record) {}
+  void About(uint64_t round) { round_ = round; }
+
+  Answer Call(size_t f, size_t robot, std::span<const Word> arguments, std::span<Word> result) override {
+    if (model_.functions[f].port < 0) return replica_.calls().Call(f, robot, arguments, result);
+    const uint64_t question = koord::node::QuestionOf(replica_.team(), f, robot, arguments);
+    const auto known = record_.answers.find({static_cast<uint32_t>(robot), question});
+    if (known == record_.answers.end()) return Answer::kNone;
+    const auto answer = std::ranges::find(known->second, round_, &FleetRecord::Answer::round);
+    if (answer == known->second.end()) return Answer::kNone;
+    runtime::codec::Reader reader(answer->value);
+    std::vector<Word> words;
+    koord::node::DecodeValue(model_.types, replica_.team().heap(), model_.functions[f].result, reader, words);
+    if (!reader.Complete() || words.size() != result.size()) return Answer::kNone;
+    std::ranges::copy(words, result.begin());
+    return Answer::kValue;
+  }
+  void Log(size_t, size_t, std::span<const Word>) override {}
+
+ private:
+  Replica& replica_;
+  const koord::Model& model_;
+  const FleetRecord& record_;
+  uint64_t round_ = 0;
+};
+
+double Seconds(int64_t time) { return static_cast<double>(time) * 1e-9; }
+
+class Teller {
+ public:
+  Teller(const FleetRecord& record, const sim::Fleet& fleet, LogsReport& report)
+      : record_(record.record), fleet_(fleet), report_(report) {}
+
+  void Run() {
+    const auto& entries = record_.entries;
+    report_.lines = entries.size();
+    if (entries.empty()) return;
+    start_ = entries.front().time;
+    report_.length = Seconds(entries.back().time - start_);
+    uint64_t epoch = 0;
+    for (const Entry& e : entries) {
+      if (e.kind == Kind::kCommitted) report_.rounds = std::max(report_.rounds, e.round);
+      if (e.kind == Kind::kFellBack) {
+        ++report_.fallbacks;
+        Say(e, fmt::format("{} falls back", NameOf(e.robot)));
+      }
+      if (e.kind != Kind::kAdopted || e.epoch <= epoch || e.what >= record_.members.size()) continue;
+      epoch = e.epoch;
+      std::vector<std::string> names;
+      for (const history::Life& life : record_.members[e.what]) names.push_back(NameOf(life.robot));
+      Say(e, fmt::format("the team is {}", fmt::join(names, ", ")));
+    }
+  }
+
+ private:
+  std::string NameOf(uint32_t robot) const {
+    return robot < fleet_.robots.size() ? fleet_.robots[robot].name : fmt::format("robot {}", robot);
+  }
+  void Say(const Entry& e, std::string what) {
+    report_.story.emplace_back(Seconds(e.time - start_), std::move(what));
+  }
+
+  const history::Record& record_;
+  const sim::Fleet& fleet_;
+  LogsReport& report_;
+  int64_t start_ = 0;
+};
+
+// Each final state, once, in order.
+void Monitored(const FleetRecord& record, Replica& replica, LogsReport& report,
+               diag::Diagnostics& diagnostics) {
+  koord::semantics::Team& team = replica.team();
+  for (const auto& part : team.unchecked())
+    report.unchecked.push_back(fmt::format("{}: {}", part.name, part.reason));
+  sim::Monitor monitor(team, diagnostics, [](const sim::Violation&, bool) {});
+  std::map<std::pair<uint64_t, uint64_t>, size_t> stored;  // by place: images
+  std::set<uint64_t> seen;
+  const auto& entries = record.record.entries;
+  for (const Entry& e : entries) {
+    if (e.kind == Kind::kStored) stored[{e.epoch, e.round}] = e.what;
+    const auto image = stored.find({e.epoch, e.round});
+    if (e.kind != Kind::kCommitted || e.round == 0 || image == stored.end() || !seen.insert(e.round).second)
+      continue;
+    std::vector<Word> state = history::StateOf(team, record.record.images[image->second]);
+    if (!state.empty()) monitor.Settled(Seconds(e.time - entries.front().time), state, true);
+  }
+  report.violations = monitor.violations();
+}
+
+}  // namespace
+
+base::Result<LogsReport> JudgeLogs(const std::vector<RobotLog>& logs, const koord::Model& model,
+                                   const sim::Fleet& fleet, const base::StopToken& stop,
+                                   diag::Diagnostics& diagnostics) {
+  if (logs.empty()) return base::Error{"there is no log"};
+  const nlohmann::json& first = logs[0].run;
+  std::set<std::pair<uint64_t, uint64_t>> lives;
+  for (const RobotLog& log : logs) {
+    for (const char* key : {"program", "spec", "fleet", "session"}) {
+      if (log.run.value(key, "") != first.value(key, ""))
+        return base::Error{fmt::format("`{}` and `{}` are not of one run: they differ in their {}",
+                                       logs[0].path, log.path, key)};
+    }
+    if (!lives.emplace(log.run.value("robot", uint64_t{0}), log.run.value("life", uint64_t{0})).second)
+      return base::Error{
+          fmt::format("`{}` is there twice, or is the log of a robot that is there", log.path)};
+  }
+  const size_t before = diagnostics.errors();
+  const std::vector<sim::Port> ports = sim::FindPorts(model, fleet.robots, diagnostics);
+  if (diagnostics.errors() != before) return base::Error{"the program cannot be run"};
+  const auto replica =
+      Replica::Make(model, fleet, ports, 0, first.value("seed", uint64_t{1}), nullptr, diagnostics);
+  if (replica == nullptr) return base::Error{"the program cannot be run"};
+  const auto merged = Merged(logs, *replica);
+  if (!merged.ok()) return merged.error();
+  const FleetRecord& record = merged.value();
+  LogsReport report;
+  Teller(record, fleet, report).Run();
+  std::set<uint64_t> there;
+  for (const RobotLog& log : logs) there.insert(log.run.value("robot", uint64_t{0}));
+  const bool lost = std::ranges::any_of(logs, [](const RobotLog& log) { return log.lost > 0; });
+  Answers answers(*replica, model, record);
+  replica->team().machine().SetHost(&answers);
+  if (lost) {
+    report.unchecked.emplace_back("the protocol: a robot could not keep up with its log");
+  } else if (there.size() < record.record.robots) {
+    report.unchecked.push_back(
+        fmt::format("the protocol: there are logs of {} of {} robots", there.size(), record.record.robots));
+  } else {
+    history::Judge judge(replica->team(), [&](uint64_t, uint64_t round) { answers.About(round); });
+    report.findings = judge.Check(record.record, stop);
+    report.explained = judge.rounds();
+    const bool cut = std::ranges::any_of(logs, [](const RobotLog& log) { return !log.complete; });
+    // Of a robot that was killed, the last half second may be missing: what only it could have said.
+    if (cut)
+      std::erase_if(report.findings, [](const history::Finding& f) {
+        return f.wrong == history::Wrong::kTooEarly || f.wrong == history::Wrong::kLost;
+      });
+    if (cut) report.unchecked.emplace_back("whether a robot acted before a majority knew: a log was cut off");
+  }
+  Monitored(record, *replica, report, diagnostics);
+  return report;
+}
+
+}  // namespace rondo::deploy

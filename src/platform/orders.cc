@@ -1,0 +1,173 @@
+#include "platform/orders.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "ros/nav_msgs.h"
+#include "transport/mailbox.h"
+
+namespace rondo::platform {
+
+using koord::semantics::ToFloat;
+using sim::Point;
+
+namespace {
+
+using std::chrono::milliseconds;
+
+// `goal` and `path` are kept by drivers for as long as they like.
+constexpr ros::Qos kOrders{.depth = 1};
+
+ros::geometry_msgs::Pose PoseAt(const Point& p) {
+  ros::geometry_msgs::Pose pose;
+  pose.position.x = p[0];
+  pose.position.y = p[1];
+  pose.position.z = p[2];
+  pose.orientation.w = 1;
+  return pose;
+}
+
+}  // namespace
+
+Orders::Orders(const koord::Model& model, const sim::Fleet& fleet, const std::vector<sim::Port>& ports,
+               size_t robot)
+    : model_(model), fleet_(fleet) {
+  for (const sim::Port& port : ports) {
+    if (sim::IsActuator(model, port))
+      lines_.push_back({&port, *TopicOf(model, fleet, robot, port), nullptr, {}, {}});
+  }
+}
+
+Orders::~Orders() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+base::Result<bool> Orders::Begin(dds::Participant& participant, size_t node) {
+  for (Line& line : lines_) {
+    auto publisher = participant.Publish(node, line.topic.name, TypeOf(line.topic.carries), kOrders);
+    if (!publisher.ok()) return publisher.error();
+    line.publisher = std::move(publisher).value();
+  }
+  thread_ = std::thread([this] { Run(); });
+  return true;
+}
+
+void Orders::Extend(Time until) {
+  const std::lock_guard lock(mutex_);
+  until_ = until;
+}
+
+std::optional<std::vector<Point>> Orders::PathOf(size_t variable, const Heap& heap, const Word* at) const {
+  const auto line = std::ranges::find_if(lines_, [&](const Line& l) { return l.port->variable == variable; });
+  if (line == lines_.end()) return std::nullopt;
+  if (line->topic.carries == Carries::kPath) return sim::DecodePath(heap, *at);
+  if (line->topic.carries == Carries::kPose) return std::vector<Point>{sim::ReadPoint(at)};
+  return std::nullopt;
+}
+
+void Orders::Give(size_t variable, const Heap& heap, const Word* at, bool always) {
+  const auto line = std::ranges::find_if(lines_, [&](const Line& l) { return l.port->variable == variable; });
+  if (line == lines_.end()) return;
+  auto path = PathOf(variable, heap, at);
+  {
+    const std::lock_guard lock(mutex_);
+    if (path) {
+      line->path = std::move(*path);
+    } else if (line->topic.carries == Carries::kBool) {
+      line->numbers[0] = *at != 0 ? 1 : 0;
+    } else if (line->topic.carries == Carries::kPoint) {
+      line->numbers = sim::ReadPoint(at);
+    } else {
+      line->numbers[0] = ToFloat(*at);
+    }
+    line->due = true;
+    line->always = always;
+  }
+  changed_.notify_all();
+}
+
+void Orders::Stay(const Point& position) {
+  std::unique_lock lock(mutex_);
+  for (Line& line : lines_) {
+    if (line.topic.carries != Carries::kPath && line.topic.carries != Carries::kPose) continue;
+    line.path = {position};
+    line.due = line.always = true;
+  }
+  changed_.notify_all();
+  sent_.wait_for(lock, milliseconds(500), [&] { return std::ranges::none_of(lines_, &Line::due); });
+}
+
+uint64_t Orders::late() const {
+  const std::lock_guard lock(mutex_);
+  return late_;
+}
+
+void Orders::Run() {
+  std::unique_lock lock(mutex_);
+  const auto wanted = [this] { return ended_ || std::ranges::any_of(lines_, &Line::due); };
+  while (true) {
+    changed_.wait_for(lock, milliseconds(100), wanted);
+    for (Line& line : lines_) {
+      if (!line.due && !(line.unheard && line.publisher->matched() > 0)) continue;
+      const bool due = std::exchange(line.due, false);
+      if (!line.always && transport::BootTime() > until_) {
+        late_ += due ? 1 : 0;
+        continue;
+      }
+      line.unheard = line.publisher->matched() == 0;
+      Send(line);
+    }
+    sent_.notify_all();
+    if (ended_) return;
+  }
+}
+
+// What cannot be sent is lost, like anything on the way.
+void Orders::Send(const Line& line) const {
+  switch (line.topic.carries) {
+    case Carries::kPose: {
+      ros::geometry_msgs::PoseStamped m;
+      m.header = HeaderOf(fleet_.ros.frame);
+      m.pose = PoseAt(line.path.front());
+      (void)line.publisher->Publish(m).ok();
+      return;
+    }
+    case Carries::kPath: {
+      ros::nav_msgs::Path m;
+      m.header = HeaderOf(fleet_.ros.frame);
+      for (const Point& p : line.path) {
+        auto& pose = m.poses.emplace_back();
+        pose.header = m.header;
+        pose.pose = PoseAt(p);
+      }
+      (void)line.publisher->Publish(m).ok();
+      return;
+    }
+    case Carries::kBool: {
+      ros::std_msgs::Bool m;
+      m.data = line.numbers[0] != 0;
+      (void)line.publisher->Publish(m).ok();
+      return;
+    }
+    case Carries::kNumber: {
+      ros::std_msgs::Float64 m;
+      m.data = line.numbers[0];
+      (void)line.publisher->Publish(m).ok();
+      return;
+    }
+    case Carries::kPoint: {
+      (void)line.publisher->Publish(PoseAt(line.numbers).position).ok();
+      return;
+    }
+    case Carries::kOdometry:
+    case Carries::kScan:
+      return;
+  }
+}
+
+}  // namespace rondo::platform

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "dds/participant.h"
+#include "koord/node/cells.h"
+#include "platform/topics.h"
+#include "runtime/rounds/settings.h"
+
+namespace rondo::platform {
+
+using koord::semantics::Heap;
+using koord::semantics::Word;
+using runtime::rounds::Time;
+
+/// Sends what the actuators of one robot are told to topics of ROS 2, on a thread of its own: who gives an order does not wait.
+/// Looks at the clock before each message: none is sent after the time until which it may take effect. What nobody listened
+/// to is sent again when somebody does.
+class Orders {
+ public:
+  /// @param ports  of the program; outlives this, as do the others.
+  Orders(const koord::Model& model, const sim::Fleet& fleet, const std::vector<sim::Port>& ports,
+         size_t robot);
+  Orders(const Orders&) = delete;
+  Orders& operator=(const Orders&) = delete;
+  ~Orders();
+
+  /// Begins. @error in the words of the library.
+  base::Result<bool> Begin(dds::Participant& participant, size_t node);
+
+  /// Says that all orders, this one and those before, may take effect until then.
+  void Extend(Time until);
+  /// Tells one actuator what its words say; latest wins. `always`: whatever time it is, as for fallbacks.
+  void Give(size_t variable, const Heap& heap, const Word* at, bool always);
+  /// Tells the robot to stay where it is, whatever time it is, and waits until that is sent, for half a second at most.
+  void Stay(const sim::Point& position);
+
+  /// Returns the path that a robot is told by that actuator; nothing if it is no actuator that makes it go somewhere.
+  std::optional<std::vector<sim::Point>> PathOf(size_t variable, const Heap& heap, const Word* at) const;
+  /// Returns how many orders came too late to be sent.
+  uint64_t late() const;
+
+ private:
+  struct Line {
+    const sim::Port* port;
+    Topic topic;
+    std::unique_ptr<dds::Publisher> publisher;
+    std::vector<sim::Point> path;     // of kPose one point
+    std::array<double, 3> numbers{};  // of others
+    bool due = false;                 // to be sent
+    bool unheard = false;             // sent, and nobody was there
+    bool always = false;              // whatever time it is
+  };
+  void Run();
+  void Send(const Line& line) const;
+
+  const koord::Model& model_;
+  const sim::Fleet& fleet_;
+  std::vector<Line> lines_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_, sent_;
+  Time until_ = 0;
+  uint64_t late_ = 0;
+  bool ended_ = false;
+  std::thread thread_;
+};
+
+}  // namespace rondo::platform

@@ -1,0 +1,133 @@
+#include "platform/topics.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "ros/names.h"
+#include "ros/nav_msgs.h"
+#include "ros/sensor_msgs.h"
+
+namespace rondo::platform {
+
+using sim::BodyPort;
+using sim::PortRole;
+
+namespace {
+
+Carries CarriedBy(const sim::Port& port, size_t robot) {
+  if (const auto& own = port.own[robot]) {
+    switch (own->kind) {
+      case BodyPort::Kind::kNumber:
+        return Carries::kNumber;
+      case BodyPort::Kind::kPoint:
+        return Carries::kPoint;
+      case BodyPort::Kind::kBool:
+        return Carries::kBool;
+    }
+  }
+  switch (port.role) {
+    case PortRole::kPosition:
+    case PortRole::kVelocity:
+    case PortRole::kHeading:
+      return Carries::kOdometry;
+    case PortRole::kReached:
+      return Carries::kBool;
+    case PortRole::kScans:
+      return Carries::kScan;
+    case PortRole::kTarget:
+      return Carries::kPose;
+    case PortRole::kPath:
+      return Carries::kPath;
+    case PortRole::kOwn:
+      break;
+  }
+  return Carries::kNumber;
+}
+
+std::string UsualName(Carries carries, const std::string& port) {
+  switch (carries) {
+    case Carries::kOdometry:
+      return "odom";
+    case Carries::kScan:
+      return "scan";
+    case Carries::kPose:
+      return "goal_pose";
+    case Carries::kPath:
+      return "path";
+    case Carries::kBool:
+    case Carries::kNumber:
+    case Carries::kPoint:
+      break;
+  }
+  return port;
+}
+
+}  // namespace
+
+std::optional<Topic> TopicOf(const koord::Model& model, const sim::Fleet& fleet, size_t robot,
+                             const sim::Port& port) {
+  const koord::Variable& variable = model.variables[port.variable];
+  Topic topic;
+  topic.port = variable.name.substr(variable.module.size() + 1);
+  topic.carries = CarriedBy(port, robot);
+  const auto said = fleet.ros.ports.find(topic.port);
+  const bool named = said != fleet.ros.ports.end();
+  if (port.role == PortRole::kReached && !port.own[robot] && !named) return std::nullopt;
+  topic.name = ros::FullName(fleet.robots[robot].node_namespace,
+                             named ? said->second.topic : UsualName(topic.carries, topic.port));
+  topic.max_age = named && said->second.max_age > 0 ? said->second.max_age : 5 * fleet.delta;
+  return topic;
+}
+
+const ros::Message& TypeOf(Carries carries) {
+  switch (carries) {
+    case Carries::kOdometry:
+      return ros::nav_msgs::Odometry::kMessage;
+    case Carries::kScan:
+      return ros::sensor_msgs::LaserScan::kMessage;
+    case Carries::kPose:
+      return ros::geometry_msgs::PoseStamped::kMessage;
+    case Carries::kPath:
+      return ros::nav_msgs::Path::kMessage;
+    case Carries::kBool:
+      return ros::std_msgs::Bool::kMessage;
+    case Carries::kNumber:
+      return ros::std_msgs::Float64::kMessage;
+    case Carries::kPoint:
+      return ros::geometry_msgs::Point::kMessage;
+  }
+  return ros::std_msgs::Empty::kMessage;
+}
+
+int64_t WallTime() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+ros::builtin_interfaces::Time StampOf(int64_t nanoseconds) {
+  ros::builtin_interfaces::Time stamp;
+  stamp.sec = static_cast<int32_t>(nanoseconds / 1'000'000'000);
+  stamp.nanosec = static_cast<uint32_t>(nanoseconds % 1'000'000'000);
+  return stamp;
+}
+
+ros::std_msgs::Header HeaderOf(const std::string& frame) {
+  ros::std_msgs::Header header;
+  header.stamp = StampOf(WallTime());
+  header.frame_id = frame;
+  return header;
+}
+
+ros::geometry_msgs::Quaternion Turned(double yaw) {
+  ros::geometry_msgs::Quaternion q;
+  q.z = std::sin(yaw / 2);
+  q.w = std::cos(yaw / 2);
+  return q;
+}
+
+double YawOf(const ros::geometry_msgs::Quaternion& q) {
+  return std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
+}
+
+}  // namespace rondo::platform

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "koord/check/model.h"
+#include "ros/geometry_msgs.h"
+#include "ros/message.h"
+#include "ros/qos.h"
+#include "ros/std_msgs.h"
+#include "sim/ports.h"
+
+/// Connects the ports of programs with topics of ROS 2.
+namespace rondo::platform {
+
+/// Names what a topic carries.
+enum class Carries : uint8_t {
+  kOdometry,  ///< nav_msgs/Odometry: where the robot is, and how fast
+  kScan,      ///< sensor_msgs/LaserScan
+  kPose,      ///< geometry_msgs/PoseStamped: where to go
+  kPath,      ///< nav_msgs/Path: which way to go
+  kBool,      ///< std_msgs/Bool
+  kNumber,    ///< std_msgs/Float64
+  kPoint,     ///< geometry_msgs/Point
+};
+
+/// Says on which topic a port is.
+struct Topic {
+  std::string port;  ///< its name in the program, without the module
+  std::string name;  ///< in full, with the namespace of the robot
+  Carries carries = Carries::kNumber;
+  double max_age = 0;  ///< of a sensor, in seconds
+};
+
+/// Returns the topic of a port of a robot: what the fleet says, else the usual one. Nothing for `reached`, unless the fleet
+/// names a topic: the robot finds out by itself whether it is where it was told to go.
+std::optional<Topic> TopicOf(const koord::Model& model, const sim::Fleet& fleet, size_t robot,
+                             const sim::Port& port);
+
+/// Returns the type of the messages on it.
+const ros::Message& TypeOf(Carries carries);
+
+/// Returns a header with this frame and what the wall clock says.
+ros::std_msgs::Header HeaderOf(const std::string& frame);
+/// Converts times since 1970 in nanoseconds.
+ros::builtin_interfaces::Time StampOf(int64_t nanoseconds);
+int64_t WallTime();
+
+/// Converts angles around the vertical axis, in radians, and orientations; of one that is none, the angle is 0.
+ros::geometry_msgs::Quaternion Turned(double yaw);
+double YawOf(const ros::geometry_msgs::Quaternion& q);
+
+}  // namespace rondo::platform
