@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "dds/raw_type.h"
+#include "dds/sockets.h"
 #include "ros/discovery_info.h"
 #include "ros/names.h"
 
@@ -163,6 +164,7 @@ base::Result<std::unique_ptr<Participant>> Participant::Open(const Network& netw
   {
     const std::lock_guard lock(LibraryMutex());
     Words::Get().Take();
+    const std::set<int> others = DatagramSockets();
     // What the user configures comes first.
     if (std::getenv("CYCLONEDDS_URI") == nullptr) {
       const dds_entity_t domain = dds_create_domain(network.domain, Configuration(network).c_str());
@@ -179,6 +181,7 @@ base::Result<std::unique_ptr<Participant>> Participant::Open(const Network& netw
       if (Users() == 0) dds_delete(DDS_CYCLONEDDS_HANDLE);
       return error;
     }
+    LimitSending(others);
     ++Users();
   }
   p->old_identities_ = network.old_identities;

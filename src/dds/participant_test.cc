@@ -1,11 +1,14 @@
 #include "dds/participant.h"
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/time.h>
 
 #include <algorithm>
 #include <cstdlib>
 
 #include "dds/domain_test.h"
+#include "dds/sockets.h"
 #include "ros/geometry_msgs.h"
 #include "ros/std_msgs.h"
 
@@ -110,6 +113,24 @@ TEST(Participant, WhoIsGoneIsNotListed) {
     EXPECT_TRUE(Eventually([&] { return b->Nodes().size() == 1; }));
   }
   EXPECT_TRUE(Eventually([&] { return b->Nodes().empty(); }));
+}
+
+// A network that stands still does not stop who sends.
+TEST(Participant, SendingWaitsForAMillisecondAtMost) {
+  const auto before = DatagramSockets();
+  const auto a = Opened();
+  size_t fresh = 0;
+  for (const int fd : DatagramSockets()) {
+    if (before.contains(fd)) continue;
+    ++fresh;
+    timeval limit{};
+    socklen_t size = sizeof(limit);
+    EXPECT_EQ(::getsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &limit, &size), 0);
+    EXPECT_EQ(limit.tv_sec, 0);
+    EXPECT_GT(limit.tv_usec, 0);
+    EXPECT_LE(limit.tv_usec, 10'000);
+  }
+  EXPECT_GT(fresh, 1U);
 }
 
 // Errors are told in the words of the library, which knows the names of interfaces.

@@ -9,18 +9,56 @@
 
 #include <cstdio>
 #include <cstring>
+#include <mutex>
+#include <vector>
 
 namespace rondo::dds {
 namespace {
 
 struct RawData : ddsi_serdata {
-  RawData(const ddsi_sertype* type, ddsi_serdata_kind kind) : ddsi_serdata{} {
-    ddsi_serdata_init(this, type, kind);
-  }
   // Completes the last group of four, which the library sends as a whole.
   void Pad() { bytes.resize((bytes.size() + 3) / 4 * 4); }
   std::string bytes;
 };
+
+// Keeps samples, with their memory, for the next ones.
+class Pool {
+ public:
+  // Lives as long as the process: the library may hold samples to its end.
+  static Pool& Get() {
+    static auto* pool = new Pool;
+    return *pool;
+  }
+  RawData* New(const ddsi_sertype* type, ddsi_serdata_kind kind) {
+    RawData* data = Pop();
+    if (data == nullptr) data = new RawData{};
+    data->bytes.clear();
+    ddsi_serdata_init(data, type, kind);
+    return data;
+  }
+  void Give(RawData* data) {
+    if (data->bytes.capacity() <= kMostBytes) {
+      const std::lock_guard lock(mutex_);
+      if (kept_.size() < kMostKept) return kept_.push_back(data);
+    }
+    delete data;
+  }
+
+ private:
+  static constexpr size_t kMostKept = 256, kMostBytes = 4096;
+  Pool() { kept_.reserve(kMostKept); }
+  RawData* Pop() {
+    const std::lock_guard lock(mutex_);
+    if (kept_.empty()) return nullptr;
+    RawData* data = kept_.back();
+    kept_.pop_back();
+    return data;
+  }
+  std::mutex mutex_;
+  std::vector<RawData*> kept_;
+};
+
+RawData* New(const ddsi_sertype* type, ddsi_serdata_kind kind) { return Pool::Get().New(type, kind); }
 
 const RawData& Raw(const ddsi_serdata* data) { return *static_cast<const RawData*>(data); }
 
@@ -30,7 +68,7 @@ uint32_t Size(const ddsi_serdata* data) { return static_cast<uint32_t>(Raw(data)
 
 ddsi_serdata* FromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragment,
                             size_t size) {
-  auto* data = new RawData(type, kind);
+  auto* data = New(type, kind);
   data->bytes.resize(size);
   uint32_t done = 0;  // fragments may overlap
   for (; fragment != nullptr; fragment = fragment->nextfrag) {
@@ -45,7 +83,7 @@ ddsi_serdata* FromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, co
 
 ddsi_serdata* FromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
                          const ddsrt_iovec_t* pieces, size_t size) {
-  auto* data = new RawData(type, kind);
+  auto* data = New(type, kind);
   for (ddsrt_msg_iovlen_t i = 0; i < count; ++i)
     data->bytes.append(static_cast<const char*>(pieces[i].iov_base), pieces[i].iov_len);
   data->bytes.resize(size);
@@ -53,12 +91,10 @@ ddsi_serdata* FromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt
   return data;
 }
 
-ddsi_serdata* FromKeyHash(const ddsi_sertype* type, const ddsi_keyhash*) {
-  return new RawData(type, SDK_KEY);
-}
+ddsi_serdata* FromKeyHash(const ddsi_sertype* type, const ddsi_keyhash*) { return New(type, SDK_KEY); }
 
 ddsi_serdata* FromSample(const ddsi_sertype* type, ddsi_serdata_kind kind, const void* sample) {
-  auto* data = new RawData(type, kind);
+  auto* data = New(type, kind);
   if (kind == SDK_DATA) data->bytes = *static_cast<const std::string_view*>(sample);
   data->Pad();
   return data;
@@ -80,12 +116,12 @@ bool ToSample(const ddsi_serdata* data, void* sample, void**, void*) {
   return true;
 }
 ddsi_serdata* ToUntyped(const ddsi_serdata* data) {
-  auto* untyped = new RawData(data->type, SDK_KEY);
+  auto* untyped = New(data->type, SDK_KEY);
   untyped->type = nullptr;
   return untyped;
 }
 bool UntypedToSample(const ddsi_sertype*, const ddsi_serdata*, void*, void**, void*) { return true; }
-void Free(ddsi_serdata* data) { delete static_cast<RawData*>(data); }
+void Free(ddsi_serdata* data) { Pool::Get().Give(static_cast<RawData*>(data)); }
 size_t Show(const ddsi_sertype*, const ddsi_serdata* data, char* out, size_t size) {
   return static_cast<size_t>(std::snprintf(out, size, "%zu bytes", Raw(data).bytes.size()));
 }

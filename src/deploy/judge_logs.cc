@@ -62,7 +62,13 @@ class Teller {
     report_.length = Seconds(entries.back().time - start_);
     uint64_t epoch = 0;
     for (const Entry& e : entries) {
-      if (e.kind == Kind::kCommitted) report_.rounds = std::max(report_.rounds, e.round);
+      if (e.kind == Kind::kContributed) said_[e.robot] = &e;
+      if (e.kind == Kind::kCommitted) {
+        report_.rounds = std::max(report_.rounds, e.round);
+        const auto said = said_.find(e.robot);
+        if (said != said_.end() && said->second->epoch == e.epoch && said->second->round + 1 == e.round)
+          report_.waits.push_back(Seconds(e.time - said->second->time));
+      }
       if (e.kind == Kind::kFellBack) {
         ++report_.fallbacks;
         Say(e, fmt::format("{} falls back", NameOf(e.robot)));
@@ -73,6 +79,7 @@ class Teller {
       for (const history::Life& life : record_.members[e.what]) names.push_back(NameOf(life.robot));
       Say(e, fmt::format("the team is {}", fmt::join(names, ", ")));
     }
+    std::ranges::sort(report_.waits);
   }
 
  private:
@@ -87,9 +94,11 @@ class Teller {
   const sim::Fleet& fleet_;
   LogsReport& report_;
   int64_t start_ = 0;
+  std::map<uint32_t, const Entry*> said_;  // by robot: last
 };
 
-// Each final state, once, in order.
+// Each final state, once, in order; and, as long as nobody fell back, what the sensors said at the start of the next round
+// against what controllers promise of the time between.
 void Monitored(const FleetRecord& record, Replica& replica, LogsReport& report,
                diag::Diagnostics& diagnostics) {
   koord::semantics::Team& team = replica.team();
@@ -98,14 +107,31 @@ void Monitored(const FleetRecord& record, Replica& replica, LogsReport& report,
   sim::Monitor monitor(team, diagnostics, [](const sim::Violation&, bool) {});
   std::map<std::pair<uint64_t, uint64_t>, size_t> stored;  // by place: images
   std::set<uint64_t> seen;
+  std::pair<uint64_t, uint64_t> last;  // place
+  std::vector<Word> settled;           // then; empty: something else happened since
   const auto& entries = record.record.entries;
   for (const Entry& e : entries) {
+    if (e.kind == Kind::kFellBack) settled.clear();
     if (e.kind == Kind::kStored) stored[{e.epoch, e.round}] = e.what;
     const auto image = stored.find({e.epoch, e.round});
     if (e.kind != Kind::kCommitted || e.round == 0 || image == stored.end() || !seen.insert(e.round).second)
       continue;
     std::vector<Word> state = history::StateOf(team, record.record.images[image->second]);
-    if (!state.empty()) monitor.Settled(Seconds(e.time - entries.front().time), state, true);
+    if (state.empty()) continue;
+    const double time = Seconds(e.time - entries.front().time);
+    if (!settled.empty() && last == std::pair(e.epoch, e.round - 1)) {
+      std::vector<Word> now = settled;
+      for (const koord::node::Cell cell : replica.node().cells().sensors()) {
+        for (size_t r = 0; r < team.robots(); ++r) {
+          const uint32_t at = replica.node().cells().Address(cell, r);
+          std::copy_n(state.begin() + at, replica.node().cells().Width(cell), now.begin() + at);
+        }
+      }
+      monitor.During(time, now, settled, true);
+    }
+    monitor.Settled(time, state, true);
+    last = {e.epoch, e.round};
+    settled = std::move(state);
   }
   report.violations = monitor.violations();
 }

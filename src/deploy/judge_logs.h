@@ -19,6 +19,8 @@ struct LogsReport {
   size_t explained = 0;                    ///< rounds that follow from the one before by the program
   uint64_t fallbacks = 0;
   size_t lines = 0;
+  std::vector<double> waits =
+      {};             ///< seconds from what a robot said to the end of its round, in increasing order
   double length = 0;  ///< seconds from the first line to the last
   std::vector<std::pair<double, std::string>>
       story;  ///< when something happened to the team, in seconds, and what

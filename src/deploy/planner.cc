@@ -41,7 +41,10 @@ Functions::Planned PlannerThread::Ask(const World& world, const PlanRequest& req
     changed_.notify_all();
   }
   if (wait) changed_.wait(lock, [&] { return question->answer || ended_; });
-  return question->answer.value_or(Functions::Planned{false, std::nullopt});
+  Functions::Planned planned = question->answer.value_or(Functions::Planned{false, std::nullopt});
+  if (planned.path && !planned.path->empty() && planned.path->front() != request.start)
+    planned.path->insert(planned.path->begin(), request.start);
+  return planned;
 }
 
 void PlannerThread::Run() {

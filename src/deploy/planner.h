@@ -12,10 +12,10 @@
 namespace rondo::deploy {
 
 /// Plans paths on a thread of its own, while rounds go on. What is asked again within two seconds, while the robot is where it
-/// was, is the same question, wherever other robots are meanwhile. Thread-safe.
+/// was, is the same question, wherever other robots are meanwhile; its answer begins where the robot is now. Thread-safe.
 class PlannerThread {
  public:
-  /// @param near  how far a robot may be from where it asked, in metres.
+  /// @param near  how far a robot may be from where it asked, in metres; paths come as much nearer to obstacles.
   explicit PlannerThread(double near) : near_(near) {}
   PlannerThread(const PlannerThread&) = delete;
   PlannerThread& operator=(const PlannerThread&) = delete;

@@ -59,7 +59,7 @@ class RobotProcess {
     const size_t before = diagnostics_.errors();
     ports_ = sim::FindPorts(model_, fleet_.robots, diagnostics_);
     if (diagnostics_.errors() != before) return Reported();
-    planner_ = std::make_unique<PlannerThread>(0.2);
+    planner_ = std::make_unique<PlannerThread>(fleet_.clearance / 2);
     replica_ = Make(planner_.get());
     if (replica_ == nullptr) return Reported();
     agreement_ = AgreementOf(options_, *replica_);

@@ -7,6 +7,7 @@
 
 #include "base/counted.h"
 #include "driver/command.h"
+#include "driver/logs_text.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "runs/simulation_files.h"
@@ -34,11 +35,6 @@ struct Options {
 };
 
 nlohmann::json Finite(double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(nullptr); }
-
-// Of increasing numbers, that which so many of them do not exceed.
-double Quantile(const std::vector<double>& sorted, double share) {
-  return sorted[static_cast<size_t>(share * static_cast<double>(sorted.size() - 1))];
-}
 
 std::string Summary(const sim::NetworkReport& network, const sim::SimulationReport& report,
                     const std::vector<sim::FleetRobot>& robots) {

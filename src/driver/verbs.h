@@ -20,6 +20,8 @@ void AddProveVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddExploreVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddSimulateVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddCampaignVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddRunVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddLaunchVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddReplayVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddPlotVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddReachVerb(CLI::App& app, verdict::ExitStatus& status);

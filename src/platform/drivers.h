@@ -50,11 +50,12 @@ class Drivers {
   const sim::Fleet& fleet_;
   const std::vector<sim::Port>& ports_;
   const std::vector<std::unique_ptr<sim::Body>>& bodies_;
-  std::vector<std::unique_ptr<dds::Subscription>> subscriptions_;
   std::vector<Voice> voices_;
   std::unique_ptr<dds::Publisher> transforms_;
   std::mutex mutex_;
   std::vector<Order> orders_;
+  std::vector<std::unique_ptr<dds::Subscription>>
+      subscriptions_;  // last: nothing arrives any more when the others go
 };
 
 }  // namespace rondo::platform

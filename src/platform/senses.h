@@ -71,7 +71,6 @@ class Senses final : public koord::node::Sensors {
   const size_t robot_;
   Heap& heap_;
   const sim::Waypoints::Tolerance tolerance_;
-  std::vector<std::unique_ptr<dds::Subscription>> subscriptions_;
 
   std::mutex mutex_;
   std::vector<Heard> heard_;
@@ -82,6 +81,8 @@ class Senses final : public koord::node::Sensors {
   Frames frames_;
   sim::Waypoints way_;
   std::vector<Word> words_;  // kept for its memory
+  std::vector<std::unique_ptr<dds::Subscription>>
+      subscriptions_;  // last: nothing arrives any more when the others go
 };
 
 }  // namespace rondo::platform

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
+#include <cstring>
 #include <thread>
 
 #include "ros/rondo_msgs.h"
@@ -23,17 +25,23 @@ using ros::rondo_msgs::Datagram;
 
 constexpr ros::Qos kFrames{.reliable = false, .depth = 256};
 constexpr size_t kMostBytes = 64'000;  // of a datagram
-constexpr size_t kHeader = 12;         // the encoding, `to`, and how many bytes there are
+constexpr size_t kHeader = 12;  // of a `Datagram` in CDR: the encoding, `to`, and how many bytes there are
 
 class Way : public Transport {
  public:
   Way(Participant& participant, size_t node, const Fleet& fleet)
-      : participant_(participant), node_(node), fleet_(fleet), to_one_(fleet.robots.size()) {}
+      : participant_(participant),
+        node_(node),
+        fleet_(fleet),
+        to_one_(fleet.robots.size()),
+        wanted_(fleet.robots.size()),
+        asked_(fleet.robots.size()) {}
   Way(const Way&) = delete;
   Way& operator=(const Way&) = delete;
   ~Way() override {
-    outgoing_.Close();
-    if (sender_.joinable()) sender_.join();
+    wanted_.Close();
+    if (maker_.joinable()) maker_.join();
+    for (const auto& one : to_one_) delete one.load();
   }
 
   base::Result<bool> Begin() {
@@ -48,12 +56,22 @@ class Way : public Transport {
       if (!from.ok()) return from.error();
       from_.push_back(std::move(from).value());
     }
-    sender_ = std::thread([this] { Sends(); });
+    maker_ = std::thread([this] { Make(); });
     return true;
   }
 
   Time Now() override { return BootTime(); }
-  void Send(uint32_t to, View bytes) override { outgoing_.Put(to, bytes); }
+
+  // What cannot be sent is lost, like anything on the way.
+  void Send(uint32_t to, View bytes) override {
+    const auto count = static_cast<uint32_t>(bytes.size());
+    std::memcpy(sent_.data() + 4, &to, 4);
+    std::memcpy(sent_.data() + 8, &count, 4);
+    sent_.resize(kHeader);
+    sent_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    (void)To(to).Write(sent_).ok();
+  }
+
   bool Receive(Time until, Bytes& datagram) override {
     std::swap(datagram, letter_.bytes);
     const bool came = incoming_.Take(until, letter_);
@@ -74,43 +92,40 @@ class Way : public Transport {
     incoming_.Put(fleet_.self, View(reinterpret_cast<const uint8_t*>(bytes.data()) + kHeader, count));
   }
 
-  void Sends() {
-    Mailbox::Letter letter;
-    Datagram message;
-    for (;;) {
-      if (!outgoing_.Take(BootTime() + 1'000'000'000, letter)) {
-        if (outgoing_.closed()) return;
-        continue;
-      }
-      message.to = letter.to;
-      message.bytes.assign(letter.bytes.begin(), letter.bytes.end());
-      // What cannot be sent is lost, like anything on the way.
-      if (Publisher* publisher = To(letter.to)) (void)publisher->Publish(message).ok();
+  // Few robots tell each other something alone: a writer is made after the first word to a robot. Until they are connected,
+  // all hear it, and the others drop it.
+  Publisher& To(uint32_t robot) {
+    if (robot == kAll || robot >= to_one_.size()) return *to_all_;
+    Publisher* one = to_one_[robot].load(std::memory_order_acquire);
+    if (one == nullptr && !asked_[robot]) {
+      asked_[robot] = true;
+      wanted_.Put([&](uint32_t& wanted) { wanted = robot; });
     }
+    return one == nullptr || one->matched() == 0 ? *to_all_ : *one;
   }
 
-  // Few robots tell each other something alone: a writer comes with the first word to a robot. Until they are connected,
-  // all hear it, and the others drop it.
-  Publisher* To(uint32_t robot) {
-    if (robot == kAll) return to_all_.get();
-    if (robot >= to_one_.size()) return nullptr;
-    auto& one = to_one_[robot];
-    if (one == nullptr) {
+  void Make() {
+    uint32_t robot = 0;
+    while (!wanted_.closed()) {
+      if (!wanted_.Take(std::chrono::seconds(1), robot)) continue;
       auto made = participant_.Publish(node_, Topic(fleet_.robots[robot]), Datagram::kMessage, kFrames);
-      if (made.ok()) one = std::move(made).value();
+      if (made.ok()) to_one_[robot].store(std::move(made).value().release(), std::memory_order_release);
     }
-    return one == nullptr || one->matched() == 0 ? to_all_.get() : one.get();
   }
 
   Participant& participant_;
   size_t node_;
   Fleet fleet_;
-  Mailbox incoming_{1024}, outgoing_{1024};
+  std::string sent_ =
+      std::string("\x00\x01\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00", kHeader);  // a `Datagram`
+  Mailbox incoming_{1024};
   Mailbox::Letter letter_;
   std::unique_ptr<Publisher> to_all_;
-  std::vector<std::unique_ptr<Publisher>> to_one_;  // only the sender's
-  std::vector<std::unique_ptr<Subscription>> from_;
-  std::thread sender_;
+  std::vector<std::atomic<Publisher*>> to_one_;  // made when somebody wants them
+  base::Ring<uint32_t> wanted_;
+  std::vector<bool> asked_;
+  std::thread maker_;
+  std::vector<std::unique_ptr<Subscription>> from_;  // last: nothing arrives any more when the others go
 };
 
 }  // namespace

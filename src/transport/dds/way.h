@@ -18,8 +18,8 @@ struct Fleet {
   uint32_t self = 0;
 };
 
-/// Returns the way from and to one robot. The thread that uses it never calls the library: another one sends, and those
-/// of the library receive.
+/// Returns the way from and to one robot. The thread that uses it sends by itself: writers keep nothing for anybody, and the
+/// sockets of the library do not block. Threads of the library receive (docs/adr/0025-threads-of-a-robot.md).
 /// @param participant  outlives it; `node`: of that participant.
 /// @error in the words of the library.
 base::Result<std::unique_ptr<Transport>> Connect(rondo::dds::Participant& participant, size_t node,

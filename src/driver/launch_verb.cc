@@ -1,0 +1,224 @@
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/counted.h"
+#include "driver/command.h"
+#include "driver/logs_text.h"
+#include "driver/terminal.h"
+#include "driver/verbs.h"
+#include "runs/launch.h"
+
+namespace rondo::driver {
+
+namespace fs = std::filesystem;
+using verdict::ExitStatus;
+
+namespace {
+
+struct Options {
+  std::string file;
+  std::string fleet;
+  std::string spec;
+  std::string logs;
+  std::string trace;
+  std::optional<uint64_t> seed;
+  double duration = 0;
+  bool fail_on_collision = false;
+  bool json = false;
+};
+
+nlohmann::json Finite(double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(nullptr); }
+
+std::string TextOf(const deploy::StageReport& stage) {
+  std::string text = stage.collisions > 0 ? fmt::format("  {}; the first at {:.6g} s: {}\n",
+                                                        base::Counted(stage.collisions, "collision"),
+                                                        stage.first_collision, stage.first_pair)
+                                          : "  no collision\n";
+  if (std::isfinite(stage.least_between_robots))
+    text += fmt::format("  robots never closer than {:.3f} m\n", stage.least_between_robots);
+  if (std::isfinite(stage.least_to_obstacles))
+    text += fmt::format("  obstacles never closer than {:.3f} m\n", stage.least_to_obstacles);
+  if (stage.behind > 0.1)
+    text +=
+        fmt::format("  this machine is too slow: the bodies were {:.2f} s behind the clock\n", stage.behind);
+  if (!stage.failed.empty()) text += fmt::format("  {}\n", stage.failed);
+  return text;
+}
+
+std::string TextOf(const runs::RobotEnd& end) {
+  if (end.signal != 0)
+    return fmt::format("  {}: signal {} ended it; what it said is in {}\n", end.robot, end.signal,
+                       end.output);
+  if (end.status != 0)
+    return fmt::format("  {}: ended with status {}; what it said is in {}\n", end.robot, end.status,
+                       end.output);
+  return {};
+}
+
+nlohmann::json ToJson(const runs::LaunchReport& report) {
+  nlohmann::json robots = nlohmann::json::array();
+  for (const runs::RobotEnd& end : report.robots)
+    robots.push_back({{"name", end.robot},
+                      {"status", end.status},
+                      {"signal", end.signal},
+                      {"output", end.output},
+                      {"log", end.log}});
+  const deploy::StageReport& stage = report.stage;
+  return {{"time", report.time},
+          {"interrupted", report.interrupted},
+          {"collisions", stage.collisions},
+          {"least_between_robots", Finite(stage.least_between_robots)},
+          {"least_to_obstacles", Finite(stage.least_to_obstacles)},
+          {"behind", stage.behind},
+          {"robots", robots},
+          {"problem", report.problem},
+          {"judged", report.logs ? LogsJson(*report.logs) : nlohmann::json(nullptr)}};
+}
+
+// One line for the terminal: how far they are, and who has a problem.
+std::string Line(const std::vector<deploy::RobotStatus>& robots, double time) {
+  uint64_t most = 0;
+  size_t active = 0;
+  double median = 0;
+  std::string problems;
+  for (const deploy::RobotStatus& s : robots) {
+    most = std::max(most, s.round);
+    active += s.active ? 1 : 0;
+    median = std::max(median, s.median);
+    if (!s.sensors.empty())
+      problems += fmt::format("; {}: {}", s.robot, s.sensors);
+    else if (!s.unheard.empty())
+      problems += fmt::format("; {} misses {}", s.robot, fmt::join(s.unheard, ", "));
+  }
+  return fmt::format("[{:.0f} s] round {}, final after {:.2g} ms; {} of {} act{}", time, most, median, active,
+                     robots.size(), problems)
+      .substr(0, 150);
+}
+
+ExitStatus StatusOf(const runs::LaunchReport& report, const Options& options) {
+  if (!report.logs || !report.stage.failed.empty()) return ExitStatus::kRejected;
+  if (options.fail_on_collision && report.stage.collisions > 0) return ExitStatus::kRejected;
+  for (const runs::RobotEnd& end : report.robots) {
+    if (end.status != 0) return ExitStatus::kRejected;
+  }
+  const ExitStatus judged = LogsStatus(*report.logs);
+  return judged == ExitStatus::kEstablished && report.interrupted ? ExitStatus::kUndecided : judged;
+}
+
+ExitStatus Fail(const Options& options, const workspace::Session& session, const std::string& why) {
+  if (options.json) {
+    PrintJson({{"command", "launch"},
+               {"file", options.file},
+               {"status", ExitStatus::kRejected},
+               {"error", why},
+               {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}});
+  } else {
+    PrintDiagnostics(session.sources, session.diagnostics);
+    if (!why.empty()) PrintFailure(why);
+  }
+  return ExitStatus::kRejected;
+}
+
+ExitStatus Run(const Options& options) {
+  workspace::Session session;
+  const auto program = runs::LoadRobotProgram(
+      runs::FindSimulationFiles(options.file, options.spec, options.fleet), options.seed, session);
+  if (!program) return Fail(options, session, {});
+  runs::LaunchOptions launch;
+  launch.executable = fs::read_symlink("/proc/self/exe").string();
+  launch.duration = options.duration;
+  launch.logs = options.logs;
+  if (launch.logs.empty()) {
+    std::string folder = (fs::temp_directory_path() / "rondo-XXXXXX").string();
+    if (::mkdtemp(folder.data()) == nullptr)
+      return Fail(options, session, "cannot make a folder for the logs");
+    launch.logs = folder;
+  }
+  std::optional<trace::Writer> writer;
+  if (!options.trace.empty()) {
+    auto opened = trace::Writer::Open(options.trace);
+    if (!opened.ok())
+      return Fail(options, session,
+                  fmt::format("cannot write `{}`: {}", options.trace, opened.error().message));
+    writer.emplace(std::move(opened).value());
+    launch.trace = &*writer;
+  }
+  base::Result<runs::LaunchReport> ran = base::Error{};
+  {
+    ProgressLine line;
+    const InterruptScope interrupt(launch.stop);
+    launch.progress = [&](const auto& robots, double time) { line.Show(Line(robots, time)); };
+    ran = runs::Launch(*program, launch, session);
+  }
+  if (!ran.ok()) return Fail(options, session, ran.error().message);
+  const runs::LaunchReport& report = ran.value();
+  ExitStatus status = StatusOf(report, options);
+  if (writer) {
+    if (const auto done = writer->Finish(); !done.ok()) {
+      PrintFailure(fmt::format("cannot write `{}`: {}", options.trace, done.error().message));
+      status = ExitStatus::kRejected;
+    }
+  }
+  const bool keep = !options.logs.empty() || status == ExitStatus::kRejected;
+  std::error_code ignored;
+  if (!keep) fs::remove_all(launch.logs, ignored);
+  if (options.json) {
+    nlohmann::json out = ToJson(report);
+    out["command"] = "launch";
+    out["file"] = program->files.program;
+    out["status"] = status;
+    if (keep) out["logs"] = launch.logs;
+    out["diagnostics"] = diag::RenderJson(session.sources, session.diagnostics);
+    PrintJson(out);
+    return status;
+  }
+  std::string text =
+      fmt::format("{}: {}, each a process, bodies over ROS topics\n  {:.1f} s\n", program->files.program,
+                  base::Counted(program->fleet.robots.size(), "robot"), report.time);
+  if (report.logs) text += LogsText(*report.logs);
+  if (!report.problem.empty()) text += fmt::format("  the logs cannot be judged: {}\n", report.problem);
+  text += TextOf(report.stage);
+  for (const runs::RobotEnd& end : report.robots) text += TextOf(end);
+  if (report.interrupted) text += "  interrupted\n";
+  Print(text);
+  if (keep) Print(fmt::format("logs: {0}: `rondo replay {0}/*.mcap`\n", launch.logs));
+  if (writer) Print(fmt::format("trace: {}\n", options.trace));
+  PrintDiagnostics(session.sources, session.diagnostics);
+  return status;
+}
+
+}  // namespace
+
+void AddLaunchVerb(CLI::App& app, ExitStatus& status) {
+  auto options = std::make_shared<Options>();
+  Command verb(app, "launch",
+               "run a whole fleet on this machine: a process for each robot, bodies over ROS topics");
+  verb.Option("FILE", options->file,
+              "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet")
+      .Required();
+  verb.Option("--fleet", options->fleet, "the fleet, if it is not beside the program");
+  verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
+  verb.Option("--duration", options->duration, "seconds from the first round on; default: as the fleet says")
+      .Between(1e-3, 1e7);
+  verb.Option("--seed", options->seed, "of everything that is random; default: the fleet's, or 1");
+  verb.Option("--logs", options->logs,
+              "a folder for what each robot logs and says; default: it is kept only if something is wrong");
+  verb.Option("--trace", options->trace, "write where the bodies are into this file (MCAP)");
+  verb.Flag("--fail-on-collision", options->fail_on_collision, "exit status 1 if robots touch anything");
+  verb.Flag("--json", options->json, "the result as JSON on standard output");
+  verb.Footer(
+      "examples:\n"
+      "  rondo launch examples/koord/lineform --duration 30\n"
+      "  ROS_DOMAIN_ID=7 rondo launch examples/koord/delivery --logs logs\n"
+      "\n"
+      "Nothing but DDS is between the processes. While they run, the usual tools see them: `ros2 topic list`, RViz.\n"
+      "Behind the run its logs are judged: each round by the program, each final state by its invariants.\n"
+      "exit status: 0 nothing is wrong, 1 something is, 3 not everything could be judged, or interrupted");
+  verb.Run([options, &status] { status = Run(*options); });
+}
+
+}  // namespace rondo::driver

@@ -1,0 +1,263 @@
+#include "runs/launch.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "platform/topics.h"
+
+namespace rondo::runs {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+constexpr std::chrono::seconds kGrace(5);  // from a request to stop until a process is ended
+
+// Processes of robots; none outlives this.
+class Children {
+ public:
+  Children() = default;
+  Children(const Children&) = delete;
+  Children& operator=(const Children&) = delete;
+  ~Children() { End(); }
+
+  base::Result<bool> Start(const std::vector<std::string>& arguments, RobotEnd end) {
+    const int out = ::open(end.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (out < 0) return base::Error{fmt::format("cannot write `{}`: {}", end.output, std::strerror(errno))};
+    std::vector<char*> argv;
+    for (const std::string& a : arguments)
+      argv.push_back(const_cast<char*>(a.c_str()));  // NOLINT: exec does not write
+    argv.push_back(nullptr);
+    const pid_t parent = ::getpid();
+    const pid_t pid = ::fork();
+    if (pid == 0) {
+      // Only what is allowed between fork and exec. Ctrl-C is for this process alone: it asks the others to stop.
+      ::setpgid(0, 0);
+      ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+      if (::getppid() != parent) ::_exit(127);
+      ::dup2(out, STDOUT_FILENO);
+      ::dup2(out, STDERR_FILENO);
+      ::execv(argv[0], argv.data());
+      ::_exit(127);
+    }
+    ::close(out);
+    if (pid < 0) return base::Error{fmt::format("cannot start a process: {}", std::strerror(errno))};
+    children_.push_back({pid, true, std::move(end)});
+    return true;
+  }
+
+  // How many still run.
+  size_t Running() {
+    size_t running = 0;
+    for (Child& child : children_) {
+      if (!child.runs) continue;
+      int status = 0;
+      if (::waitpid(child.pid, &status, WNOHANG) == child.pid) {
+        child.runs = false;
+        child.end.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+        child.end.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+      }
+      running += child.runs ? 1 : 0;
+    }
+    return running;
+  }
+
+  // Asks all to stop, and ends those that do not.
+  void End() {
+    for (const Child& child : children_) {
+      if (child.runs) ::kill(child.pid, SIGTERM);
+    }
+    const auto until = Clock::now() + kGrace;
+    while (Running() > 0 && Clock::now() < until) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    for (const Child& child : children_) {
+      if (child.runs) ::kill(child.pid, SIGKILL);
+    }
+    while (Running() > 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+
+  std::vector<RobotEnd> Ends() const {
+    std::vector<RobotEnd> ends;
+    for (const Child& child : children_) ends.push_back(child.end);
+    return ends;
+  }
+
+ private:
+  struct Child {
+    pid_t pid;
+    bool runs;
+    RobotEnd end;
+  };
+  std::vector<Child> children_;
+};
+
+class Launcher {
+ public:
+  Launcher(const RobotProgram& program, const LaunchOptions& options, workspace::Session& session)
+      : program_(program), options_(options), session_(session) {}
+
+  base::Result<LaunchReport> Run() {
+    std::error_code failed;
+    fs::create_directories(options_.logs, failed);
+    if (failed)
+      return base::Error{fmt::format("cannot use the folder `{}`: {}", options_.logs, failed.message())};
+    dds::Network network = program_.texts.network;
+    network.profile = dds::Profile::kLoopback;
+    auto with = dds::WithEnvironment(network);
+    if (!with.ok()) return with.error();
+    // All are on this machine, whatever the fleet says.
+    ::setenv("ROS_LOCALHOST_ONLY", "1", 1);
+    ::setenv("ROS_DOMAIN_ID", fmt::to_string(with.value().domain).c_str(), 1);
+    ::unsetenv("ROS_AUTOMATIC_DISCOVERY_RANGE");
+    if (const auto started = Start(); !started.ok()) return started.error();
+    auto participant = dds::Participant::Open(with.value());
+    if (!participant.ok()) return participant.error();
+    deploy::Stage stage(program_.loaded->model, program_.fleet, program_.texts.seed, options_.trace);
+    if (const auto begun = stage.Begin(*participant.value(), Record(), session_.diagnostics); !begun.ok())
+      return begun.error();
+    const auto listens = Listen(*participant.value());
+    if (!listens.ok()) return listens.error();
+    Watch();
+    children_.End();
+    report_.stage = stage.End();
+    subscription_.reset();
+    report_.robots = children_.Ends();
+    Judge();
+    return std::move(report_);
+  }
+
+ private:
+  base::Result<bool> Start() {
+    const uint64_t session = static_cast<uint64_t>(platform::WallTime());
+    for (const sim::FleetRobot& robot : program_.fleet.robots) {
+      const fs::path folder(options_.logs);
+      RobotEnd end{robot.name, 0, 0, (folder / (robot.name + ".txt")).string(),
+                   (folder / (robot.name + ".mcap")).string()};
+      std::error_code ignored;
+      fs::remove(end.log, ignored);
+      fs::remove(end.log + ".partial", ignored);
+      std::vector<std::string> arguments{options_.executable,
+                                         "run",
+                                         program_.files.program,
+                                         "--robot",
+                                         robot.name,
+                                         "--fleet",
+                                         program_.files.fleet,
+                                         "--log",
+                                         end.log,
+                                         "--seed",
+                                         fmt::to_string(program_.texts.seed),
+                                         "--session",
+                                         fmt::to_string(session)};
+      if (!program_.files.spec.empty()) arguments.insert(arguments.end(), {"--spec", program_.files.spec});
+      if (program_.fleet.rounds.disks)
+        arguments.insert(arguments.end(), {"--state", (folder / "state").string()});
+      if (auto started = children_.Start(arguments, std::move(end)); !started.ok()) return started;
+    }
+    return true;
+  }
+
+  nlohmann::json Record() const {
+    nlohmann::json run{{"format", "rondo-trace/1"},
+                       {"engine", "launch"},
+                       {"program_name", program_.texts.program_name},
+                       {"program", program_.texts.program},
+                       {"spec", program_.texts.spec},
+                       {"fleet", program_.texts.fleet},
+                       {"seed", program_.texts.seed},
+                       {"delta", program_.fleet.delta}};
+    if (!program_.texts.files.is_null()) run["files"] = program_.texts.files;
+    return run;
+  }
+
+  base::Result<bool> Listen(dds::Participant& participant) {
+    const size_t node = participant.AddNode({"/", "rondo_launch"});
+    auto subscription =
+        participant.Subscribe(node, "/diagnostics", ros::diagnostic_msgs::DiagnosticArray::kMessage,
+                              {.depth = 1000}, [this](std::string_view bytes, const dds::Received&) {
+                                ros::diagnostic_msgs::DiagnosticArray message;
+                                if (!ros::Parse(bytes, message)) return;
+                                const std::lock_guard lock(mutex_);
+                                for (deploy::RobotStatus& status : deploy::StatusesOf(message))
+                                  statuses_[status.robot] = std::move(status);
+                              });
+    if (!subscription.ok()) return subscription.error();
+    subscription_ = std::move(subscription).value();
+    return true;
+  }
+
+  std::vector<deploy::RobotStatus> Statuses() {
+    std::vector<deploy::RobotStatus> all;
+    const std::lock_guard lock(mutex_);
+    for (const sim::FleetRobot& robot : program_.fleet.robots) {
+      const auto known = statuses_.find(robot.name);
+      all.push_back(known == statuses_.end() ? deploy::RobotStatus{robot.name} : known->second);
+    }
+    return all;
+  }
+
+  void Watch() {
+    std::optional<Clock::time_point> begun;
+    const double duration = options_.duration > 0 ? options_.duration : program_.fleet.duration;
+    for (int i = 0;; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      const auto statuses = Statuses();
+      const bool rounds = std::ranges::any_of(statuses, [](const auto& s) { return s.round > 0; });
+      if (rounds && !begun) begun = Clock::now();
+      if (begun) report_.time = std::chrono::duration<double>(Clock::now() - *begun).count();
+      if (options_.progress && i % 25 == 0) options_.progress(statuses, report_.time);
+      report_.interrupted = options_.stop.StopRequested();
+      if (report_.interrupted || report_.time >= duration || children_.Running() == 0) return;
+    }
+  }
+
+  void Judge() {
+    std::vector<deploy::RobotLog> logs;
+    for (RobotEnd& end : report_.robots) {
+      std::error_code ignored;
+      if (!fs::exists(end.log, ignored)) end.log += ".partial";
+      auto log = deploy::ReadRobotLog(end.log);
+      if (!log.ok()) {
+        end.log.clear();
+        continue;
+      }
+      logs.push_back(std::move(log).value());
+    }
+    auto judged = deploy::JudgeLogs(logs, program_.loaded->model, program_.fleet, base::StopToken(),
+                                    session_.diagnostics);
+    if (judged.ok())
+      report_.logs = std::move(judged).value();
+    else
+      report_.problem = judged.error().message;
+  }
+
+  const RobotProgram& program_;
+  const LaunchOptions& options_;
+  workspace::Session& session_;
+  LaunchReport report_;
+  std::mutex mutex_;
+  std::map<std::string, deploy::RobotStatus> statuses_;
+  std::unique_ptr<dds::Subscription> subscription_;
+  Children children_;
+};
+
+}  // namespace
+
+base::Result<LaunchReport> Launch(const RobotProgram& program, const LaunchOptions& options,
+                                  workspace::Session& session) {
+  return Launcher(program, options, session).Run();
+}
+
+}  // namespace rondo::runs

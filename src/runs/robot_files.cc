@@ -1,0 +1,55 @@
+#include "runs/robot_files.h"
+
+#include <fmt/format.h>
+
+#include "runtime/codec/messages.h"
+#include "sim/draw/history.h"
+
+namespace rondo::runs {
+
+std::optional<RobotProgram> LoadRobotProgram(const SimulationFiles& files, std::optional<uint64_t> seed,
+                                             workspace::Session& session) {
+  RobotProgram p;
+  p.files = files;
+  p.loaded = workspace::LoadKoord({files.program, files.spec, true}, session);
+  if (p.loaded == nullptr) return std::nullopt;
+  const auto file = workspace::ReadSource(files.fleet, session);
+  if (!file) return std::nullopt;
+  p.surroundings = std::make_unique<FleetFiles>(files.fleet, session);
+  p.fleet = p.surroundings->Read(*file);
+  if (session.diagnostics.has_errors()) return std::nullopt;
+  if (p.fleet.robots.size() > runtime::codec::kMostRobots) {
+    session.diagnostics.Report(diag::Kind::kFleetValue, {*file, 0, 1},
+                               fmt::format("{} robots are more than can agree over a network ({})",
+                                           p.fleet.robots.size(), runtime::codec::kMostRobots));
+    return std::nullopt;
+  }
+  sim::SimulationOptions texts;
+  KeepTexts(files, session, p.surroundings->contents(), texts);
+  p.texts.program_name = texts.program_name;
+  p.texts.program = texts.program;
+  p.texts.spec = texts.spec;
+  p.texts.fleet = texts.fleet;
+  p.texts.files = texts.files;
+  p.texts.seed = seed.value_or(p.fleet.seed.value_or(1));
+  p.texts.network = p.fleet.ros.network;
+  for (const sim::FleetRobot& robot : p.fleet.robots) {
+    if (!robot.address.empty()) p.texts.network.peers.push_back(robot.address);
+  }
+  return p;
+}
+
+std::optional<RobotProgram> LoadRobotProgram(const nlohmann::json& run, workspace::Session& session) {
+  RobotProgram p;
+  const auto kept = FilesFromJson(run.value("files", nlohmann::json::object()));
+  if (!kept) return std::nullopt;
+  p.loaded = workspace::LoadKoordTexts(sim::TextOf(run, "program_name"), sim::TextOf(run, "program"),
+                                       sim::TextOf(run, "spec"), session);
+  if (p.loaded == nullptr) return std::nullopt;
+  p.surroundings = std::make_unique<FleetFiles>(*kept, session);
+  p.fleet = p.surroundings->Read(session.sources.Add("fleet", sim::TextOf(run, "fleet")));
+  if (session.diagnostics.has_errors()) return std::nullopt;
+  return p;
+}
+
+}  // namespace rondo::runs
