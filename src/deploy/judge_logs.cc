@@ -156,10 +156,10 @@ base::Result<LogsReport> JudgeLogs(const std::vector<RobotLog>& logs, const koor
   }
   const size_t before = diagnostics.errors();
   const std::vector<sim::Port> ports = sim::FindPorts(model, fleet.robots, diagnostics);
-  if (diagnostics.errors() != before) return base::Error{"the program cannot be run"};
+  if (diagnostics.errors() != before) return base::Error{};
   const auto replica =
       Replica::Make(model, fleet, ports, 0, first.value("seed", uint64_t{1}), nullptr, diagnostics);
-  if (replica == nullptr) return base::Error{"the program cannot be run"};
+  if (replica == nullptr) return base::Error{};
   const auto merged = Merged(logs, *replica);
   if (!merged.ok()) return merged.error();
   const FleetRecord& record = merged.value();

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <thread>
 
+#include "deploy/echo.h"
 #include "deploy/latencies.h"
 #include "deploy/status.h"
 #include "platform/orders.h"
@@ -44,6 +45,16 @@ std::string Plain(const std::string& text) {
   return name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) != 0 ? "p" + name : name;
 }
 
+uint64_t Agreement(const RobotOptions& options, const Replica& replica) {
+  runtime::codec::Bytes bytes;
+  runtime::codec::Writer writer(bytes);
+  for (const std::string* text : {&options.program, &options.spec, &options.fleet})
+    writer.Block({reinterpret_cast<const uint8_t*>(text->data()), text->size()});
+  writer.Number(options.seed);
+  writer.Block(replica.before());
+  return runtime::codec::Sum(bytes);
+}
+
 class RobotProcess {
  public:
   RobotProcess(const koord::Model& model, const sim::Fleet& fleet, const RobotOptions& options,
@@ -58,21 +69,22 @@ class RobotProcess {
   base::Result<bool> Prepare() {
     const size_t before = diagnostics_.errors();
     ports_ = sim::FindPorts(model_, fleet_.robots, diagnostics_);
+    platform::CheckPorts(model_, fleet_, ports_, diagnostics_);
     if (diagnostics_.errors() != before) return Reported();
     planner_ = std::make_unique<PlannerThread>(fleet_.clearance / 2);
     replica_ = Make(planner_.get());
     if (replica_ == nullptr) return Reported();
-    agreement_ = AgreementOf(options_, *replica_);
+    agreement_ = Agreement(options_, *replica_);
     auto participant = dds::Participant::Open(options_.network);
     if (!participant.ok()) return participant.error();
     participant_ = std::move(participant).value();
     node_ = participant_->AddNode({"/" + fleet_.robots[self_].node_namespace, "rondo"});
-    orders_ = std::make_unique<platform::Orders>(model_, fleet_, ports_, self_);
-    if (auto begun = orders_->Begin(*participant_, node_); !begun.ok()) return begun;
     senses_ = std::make_unique<platform::Senses>(model_, fleet_, ports_, self_, replica_->body(self_),
                                                  replica_->team().heap());
     if (auto begun = senses_->Begin(*participant_, node_); !begun.ok()) return begun;
     Node().SetSensors(senses_.get());
+    orders_ = std::make_unique<platform::Orders>(model_, fleet_, ports_, self_, *senses_);
+    if (auto begun = orders_->Begin(*participant_, node_); !begun.ok()) return begun;
     auto diagnostics = participant_->Publish(node_, "/diagnostics",
                                              ros::diagnostic_msgs::DiagnosticArray::kMessage, ros::kDefault);
     if (!diagnostics.ok()) return diagnostics.error();
@@ -80,6 +92,7 @@ class RobotProcess {
     auto rosout = participant_->Publish(node_, "/rosout", ros::rcl_interfaces::Log::kMessage, ros::kLog);
     if (!rosout.ok()) return rosout.error();
     rosout_ = std::move(rosout).value();
+    if (auto echoes = Echo(); !echoes.ok()) return echoes;
     std::vector<std::string> names;
     for (const sim::FleetRobot& robot : fleet_.robots) names.push_back(robot.name);
     auto way = transport::dds::Connect(*participant_, node_, {Plain(options_.program_name), names, self_});
@@ -119,7 +132,7 @@ class RobotProcess {
   base::Result<bool> Finish() { return log_ == nullptr ? base::Result<bool>(true) : log_->Finish(); }
 
  private:
-  static base::Error Reported() { return {"the program cannot be run"}; }
+  static base::Error Reported() { return {}; }
   koord::node::Node& Node() { return replica_->node(); }
   std::unique_ptr<Replica> Make(PlannerThread* planner) {
     return Replica::Make(model_, fleet_, ports_, self_, options_.seed, planner, diagnostics_);
@@ -151,6 +164,22 @@ class RobotProcess {
     auto log = LogWriter::Open(options_.log, head, std::move(replica));
     if (!log.ok()) return log.error();
     log_ = std::move(log).value();
+    return true;
+  }
+
+  // Says back what it is asked, and what its clock on the wall says (`Doctor`).
+  base::Result<bool> Echo() {
+    const EchoTopics topics = EchoTopicsOf(fleet_, self_);
+    auto answers = participant_->Publish(node_, topics.answers, EchoMessage(), kEchoes);
+    if (!answers.ok()) return answers.error();
+    echo_answers_ = std::move(answers).value();
+    auto questions = participant_->Subscribe(node_, topics.questions, EchoMessage(), kEchoes,
+                                             [this](std::string_view bytes, const dds::Received&) {
+                                               if (const auto answer = AnswerTo(bytes))
+                                                 (void)echo_answers_->Write(*answer).ok();
+                                             });
+    if (!questions.ok()) return questions.error();
+    echo_questions_ = std::move(questions).value();
     return true;
   }
 
@@ -409,9 +438,11 @@ class RobotProcess {
   uint64_t agreement_ = 0;
   std::unique_ptr<dds::Participant> participant_;
   size_t node_ = 0;
-  std::unique_ptr<platform::Orders> orders_;
   std::unique_ptr<platform::Senses> senses_;
+  std::unique_ptr<platform::Orders> orders_;
   std::unique_ptr<dds::Publisher> status_, rosout_;
+  std::unique_ptr<dds::Publisher> echo_answers_;
+  std::unique_ptr<dds::Subscription> echo_questions_;
   std::unique_ptr<transport::Transport> way_;
   std::unique_ptr<runtime::durable::FileDisk> disk_;
   std::optional<runtime::codec::Bytes> record_;
@@ -457,14 +488,13 @@ std::string_view Name(RobotEnding ending) {
   return "";
 }
 
-uint64_t AgreementOf(const RobotOptions& options, const Replica& replica) {
-  runtime::codec::Bytes bytes;
-  runtime::codec::Writer writer(bytes);
-  for (const std::string* text : {&options.program, &options.spec, &options.fleet})
-    writer.Block({reinterpret_cast<const uint8_t*>(text->data()), text->size()});
-  writer.Number(options.seed);
-  writer.Block(replica.before());
-  return runtime::codec::Sum(bytes);
+std::string AgreementOf(const koord::Model& model, const sim::Fleet& fleet, const RobotOptions& options,
+                        diag::Diagnostics& diagnostics) {
+  const size_t before = diagnostics.errors();
+  const std::vector<sim::Port> ports = sim::FindPorts(model, fleet.robots, diagnostics);
+  if (diagnostics.errors() != before) return {};
+  const auto replica = Replica::Make(model, fleet, ports, 0, options.seed, nullptr, diagnostics);
+  return replica == nullptr ? std::string() : fmt::format("{:016x}", Agreement(options, *replica));
 }
 
 base::Result<RobotReport> RunRobot(const koord::Model& model, const sim::Fleet& fleet,

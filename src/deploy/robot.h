@@ -54,11 +54,13 @@ struct RobotReport {
 
 /// Runs one robot until it ends. It waits for its sensors, then for the others. When it ends, it stays where it is.
 /// Nothing of the world is awaited by the thread that runs the rounds. Reports what is wrong with the program or the fleet.
-/// @error in words: the network cannot be used, a file cannot be written, something was reported.
+/// @error in words: the network cannot be used, a file cannot be written. Empty: it was reported.
 base::Result<RobotReport> RunRobot(const koord::Model& model, const sim::Fleet& fleet,
                                    const RobotOptions& options, diag::Diagnostics& diagnostics);
 
-/// Returns a number that all robots of a fleet have in common: that of their texts and of what they begin with.
-uint64_t AgreementOf(const RobotOptions& options, const Replica& replica);
+/// Returns, in digits, what all robots of a fleet have in common: a sum of their texts and of what they begin with. Reports what
+/// is wrong with the program or the fleet, and returns nothing then.
+std::string AgreementOf(const koord::Model& model, const sim::Fleet& fleet, const RobotOptions& options,
+                        diag::Diagnostics& diagnostics);
 
 }  // namespace rondo::deploy

@@ -28,7 +28,8 @@ base::Result<bool> Stage::Begin(dds::Participant& participant, const nlohmann::j
                                 diag::Diagnostics& diagnostics) {
   const size_t before = diagnostics.errors();
   ports_ = sim::FindPorts(model_, fleet_.robots, diagnostics);
-  if (diagnostics.errors() != before) return base::Error{"the program cannot be run"};
+  platform::CheckPorts(model_, fleet_, ports_, diagnostics);
+  if (diagnostics.errors() != before) return base::Error{};
   for (size_t r = 0; r < fleet_.robots.size(); ++r) {
     const sim::FleetRobot& robot = fleet_.robots[r];
     bodies_.push_back(robot.make());
@@ -54,15 +55,6 @@ base::Result<bool> Stage::Begin(dds::Participant& participant, const nlohmann::j
   return true;
 }
 
-bool Stage::Step(double dt) {
-  for (size_t r = 0; r < bodies_.size(); ++r) {
-    if (bodies_[r]->Step(dt, fleet_.integrator)) continue;
-    report_.failed = fmt::format("the state of `{}` is not finite any more", fleet_.robots[r].name);
-    return false;
-  }
-  return true;
-}
-
 // The world follows the clock in steps of the controllers. What it cannot catch up within a tenth of a second is time that
 // does not pass in it.
 void Stage::Run() {
@@ -82,7 +74,10 @@ void Stage::Run() {
     report_.behind = std::max(report_.behind, behind);
     if (behind > 0.1) due = now;
     drivers_->Obey();
-    if (!Step(dt)) return;
+    if (const auto bad = drivers_->Step(dt)) {
+      report_.failed = fmt::format("the state of `{}` is not finite any more", fleet_.robots[*bad].name);
+      return;
+    }
     const double t = report_.time = static_cast<double>(step) * dt;
     touches_->Observe(t);
     rays.clear();

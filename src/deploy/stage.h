@@ -37,7 +37,7 @@ class Stage {
 
   /// Finds the ports, and begins. Reports what is wrong with the program or the fleet.
   /// @param run  what the trace keeps of where the run came from.
-  /// @error in the words of the library of the network, or that something was reported.
+  /// @error in the words of the library of the network. Empty: it was reported.
   base::Result<bool> Begin(dds::Participant& participant, const nlohmann::json& run,
                            diag::Diagnostics& diagnostics);
   /// Ends, and returns what was seen.
@@ -45,7 +45,6 @@ class Stage {
 
  private:
   void Run();
-  bool Step(double dt);
 
   const koord::Model& model_;
   const sim::Fleet& fleet_;

@@ -22,6 +22,7 @@ void AddSimulateVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddCampaignVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddRunVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddLaunchVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddDoctorVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddReplayVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddPlotVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddReachVerb(CLI::App& app, verdict::ExitStatus& status);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "platform/frames.h"
+#include "ros/ackermann_msgs.h"
 #include "ros/nav_msgs.h"
 #include "ros/sensor_msgs.h"
 #include "ros/tf2_msgs.h"
@@ -29,7 +30,7 @@ std::string BaseOf(const sim::Fleet& fleet, size_t robot) {
 
 Drivers::Drivers(const koord::Model& model, const sim::Fleet& fleet, const std::vector<Port>& ports,
                  const std::vector<std::unique_ptr<Body>>& bodies)
-    : model_(model), fleet_(fleet), ports_(ports), bodies_(bodies) {}
+    : model_(model), fleet_(fleet), ports_(ports), bodies_(bodies), driven_(bodies.size()) {}
 
 base::Result<bool> Drivers::Begin(dds::Participant& participant) {
   for (size_t r = 0; r < bodies_.size(); ++r) {
@@ -68,6 +69,7 @@ base::Result<bool> Drivers::Begin(dds::Participant& participant) {
 base::Result<bool> Drivers::Listen(dds::Participant& participant, size_t node, size_t robot,
                                    const Port& port) {
   const Topic topic = *TopicOf(model_, fleet_, robot, port);
+  if (Drives(topic.carries)) driven_[robot].emplace();
   auto subscription = participant.Subscribe(
       node, topic.name, TypeOf(topic.carries), {.depth = 1},
       [this, robot, &port, carries = topic.carries](std::string_view bytes, const dds::Received&) {
@@ -79,7 +81,7 @@ base::Result<bool> Drivers::Listen(dds::Participant& participant, size_t node, s
 }
 
 void Drivers::Hear(size_t robot, const Port& port, Carries carries, std::string_view bytes) {
-  Order order{robot, &port, {}, {}};
+  Order order{robot, &port, {}, {}, {}};
   bool good = false;
   switch (carries) {
     case Carries::kPose: {
@@ -112,9 +114,31 @@ void Drivers::Hear(size_t robot, const Port& port, Carries carries, std::string_
       order.numbers = PointOf(m);
       break;
     }
+    case Carries::kTwist: {
+      ros::geometry_msgs::Twist m;
+      good = ros::Parse(bytes, m);
+      order.twist = {m.linear.x, m.linear.y, m.angular.z, 0};
+      break;
+    }
+    case Carries::kTwistStamped: {
+      ros::geometry_msgs::TwistStamped m;
+      good = ros::Parse(bytes, m);
+      order.twist = {m.twist.linear.x, m.twist.linear.y, m.twist.angular.z, 0};
+      break;
+    }
+    case Carries::kAckermann: {
+      ros::ackermann_msgs::AckermannDriveStamped m;
+      good = ros::Parse(bytes, m);
+      order.twist = {m.drive.speed, 0, 0, m.drive.steering_angle};
+      break;
+    }
     case Carries::kOdometry:
     case Carries::kScan:
       break;
+  }
+  if (order.twist) {
+    order.numbers = {order.twist->forward, order.twist->left, order.twist->turn};
+    good = good && std::isfinite(order.twist->steer);
   }
   if (!good || !Finite(order.numbers) || !std::ranges::all_of(order.path, Finite)) return;
   const std::lock_guard lock(mutex_);
@@ -129,12 +153,30 @@ void Drivers::Obey() {
   }
   for (Order& order : orders) {
     Body& body = *bodies_[order.robot];
-    if (const auto& own = order.port->own[order.robot]) {
+    if (order.twist) {
+      driven_[order.robot] = Driven{*order.twist, 0};
+    } else if (const auto& own = order.port->own[order.robot]) {
       body.WritePort(*own, std::span(order.numbers).first(own->kind == sim::BodyPort::Kind::kPoint ? 3 : 1));
     } else if (order.path != body.path()) {
       body.Follow(std::move(order.path));
     }
   }
+}
+
+std::optional<size_t> Drivers::Step(double dt) {
+  constexpr double kForgotten = 0.5;  // seconds
+  for (size_t r = 0; r < bodies_.size(); ++r) {
+    bool good = true;
+    if (auto& driven = driven_[r]) {
+      if (driven->age > kForgotten) driven->twist = {};
+      driven->age += dt;
+      good = bodies_[r]->Drive(driven->twist, dt, fleet_.integrator);
+    } else {
+      good = bodies_[r]->Step(dt, fleet_.integrator);
+    }
+    if (!good) return r;
+  }
+  return std::nullopt;
 }
 
 void Drivers::Tell(const std::vector<sim::Rays>& scans) {
@@ -154,6 +196,9 @@ void Drivers::Tell(const std::vector<sim::Rays>& scans) {
         break;
       case Carries::kPose:
       case Carries::kPath:
+      case Carries::kTwist:
+      case Carries::kTwistStamped:
+      case Carries::kAckermann:
         break;
     }
   }

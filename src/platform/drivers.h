@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ class Drivers {
 
   /// Lets bodies do what came since the last call.
   void Obey();
+  /// Lets a period of `dt` seconds pass for all bodies: those that are told how to move do that, and stand still when they were
+  /// told nothing for half a second; others have controllers. Returns the first whose state is not finite any more.
+  std::optional<size_t> Step(double dt);
   /// Says where the bodies are, and what else their sensors read. `scans`: by robot; empty: no scanner has turned.
   void Tell(const std::vector<sim::Rays>& scans);
 
@@ -33,6 +37,11 @@ class Drivers {
     const sim::Port* port;
     std::vector<sim::Point> path;
     std::array<double, 3> numbers{};
+    std::optional<sim::Twist> twist;
+  };
+  struct Driven {
+    sim::Twist twist;
+    double age = 1e9;  // seconds since it was told
   };
   struct Voice {
     size_t robot;
@@ -52,6 +61,7 @@ class Drivers {
   const std::vector<std::unique_ptr<sim::Body>>& bodies_;
   std::vector<Voice> voices_;
   std::unique_ptr<dds::Publisher> transforms_;
+  std::vector<std::optional<Driven>> driven_;  // by robot
   std::mutex mutex_;
   std::vector<Order> orders_;
   std::vector<std::unique_ptr<dds::Subscription>>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "ros/ackermann_msgs.h"
 #include "ros/nav_msgs.h"
 #include "transport/mailbox.h"
 
@@ -17,6 +18,7 @@ using std::chrono::milliseconds;
 
 // `goal` and `path` are kept by drivers for as long as they like.
 constexpr ros::Qos kOrders{.depth = 1};
+constexpr milliseconds kControl(20);  // the period of controllers
 
 ros::geometry_msgs::Pose PoseAt(const Point& p) {
   ros::geometry_msgs::Pose pose;
@@ -30,11 +32,17 @@ ros::geometry_msgs::Pose PoseAt(const Point& p) {
 }  // namespace
 
 Orders::Orders(const koord::Model& model, const sim::Fleet& fleet, const std::vector<sim::Port>& ports,
-               size_t robot)
-    : model_(model), fleet_(fleet) {
+               size_t robot, Senses& senses)
+    : model_(model), fleet_(fleet), senses_(senses) {
   for (const sim::Port& port : ports) {
-    if (sim::IsActuator(model, port))
-      lines_.push_back({&port, *TopicOf(model, fleet, robot, port), nullptr, {}, {}});
+    if (!sim::IsActuator(model, port)) continue;
+    Line& line = lines_.emplace_back();
+    line.port = &port;
+    line.topic = *TopicOf(model, fleet, robot, port);
+    if (!Drives(line.topic.carries)) continue;
+    drives_ = true;
+    line.body = fleet.robots[robot].make();
+    line.body->Place(fleet.robots[robot].position, fleet.robots[robot].yaw);
   }
 }
 
@@ -65,8 +73,8 @@ void Orders::Extend(Time until) {
 std::optional<std::vector<Point>> Orders::PathOf(size_t variable, const Heap& heap, const Word* at) const {
   const auto line = std::ranges::find_if(lines_, [&](const Line& l) { return l.port->variable == variable; });
   if (line == lines_.end()) return std::nullopt;
-  if (line->topic.carries == Carries::kPath) return sim::DecodePath(heap, *at);
-  if (line->topic.carries == Carries::kPose) return std::vector<Point>{sim::ReadPoint(at)};
+  if (line->port->role == sim::PortRole::kPath) return sim::DecodePath(heap, *at);
+  if (line->port->role == sim::PortRole::kTarget) return std::vector<Point>{sim::ReadPoint(at)};
   return std::nullopt;
 }
 
@@ -94,7 +102,7 @@ void Orders::Give(size_t variable, const Heap& heap, const Word* at, bool always
 void Orders::Stay(const Point& position) {
   std::unique_lock lock(mutex_);
   for (Line& line : lines_) {
-    if (line.topic.carries != Carries::kPath && line.topic.carries != Carries::kPose) continue;
+    if (line.port->role != sim::PortRole::kPath && line.port->role != sim::PortRole::kTarget) continue;
     line.path = {position};
     line.due = line.always = true;
   }
@@ -111,8 +119,12 @@ void Orders::Run() {
   std::unique_lock lock(mutex_);
   const auto wanted = [this] { return ended_ || std::ranges::any_of(lines_, &Line::due); };
   while (true) {
-    changed_.wait_for(lock, milliseconds(100), wanted);
+    changed_.wait_for(lock, drives_ ? kControl : milliseconds(100), wanted);
     for (Line& line : lines_) {
+      if (line.body != nullptr) {
+        Drive(line);
+        continue;
+      }
       if (!line.due && !(line.unheard && line.publisher->matched() > 0)) continue;
       const bool due = std::exchange(line.due, false);
       if (!line.always && transport::BootTime() > until_) {
@@ -125,6 +137,43 @@ void Orders::Run() {
     sent_.notify_all();
     if (ended_) return;
   }
+}
+
+// What was told in time holds until something else is told, as for drivers that have the controller themselves.
+void Orders::Drive(Line& line) {
+  if (std::exchange(line.due, false)) {
+    if (line.always || transport::BootTime() <= until_)
+      line.body->Follow(line.path);
+    else
+      ++late_;
+  }
+  const auto place = senses_.place();
+  const bool blind = !place || !senses_.Unusable(transport::BootTime()).empty();
+  if (ended_ || blind) return Publish(line, {});
+  line.body->Put(place->position, place->yaw);
+  line.body->Decide(std::chrono::duration<double>(kControl).count());
+  Publish(line, line.body->Told().value_or(sim::Twist()));
+}
+
+void Orders::Publish(const Line& line, const sim::Twist& twist) const {
+  if (line.topic.carries == Carries::kAckermann) {
+    ros::ackermann_msgs::AckermannDriveStamped m;
+    m.header = HeaderOf("");
+    m.drive.speed = static_cast<float>(twist.forward);
+    m.drive.steering_angle = static_cast<float>(twist.steer);
+    (void)line.publisher->Publish(m).ok();
+    return;
+  }
+  ros::geometry_msgs::TwistStamped m;
+  m.twist.linear.x = twist.forward;
+  m.twist.linear.y = twist.left;
+  m.twist.angular.z = twist.turn;
+  if (line.topic.carries == Carries::kTwist) {
+    (void)line.publisher->Publish(m.twist).ok();
+    return;
+  }
+  m.header = HeaderOf("");
+  (void)line.publisher->Publish(m).ok();
 }
 
 // What cannot be sent is lost, like anything on the way.
@@ -166,6 +215,9 @@ void Orders::Send(const Line& line) const {
     }
     case Carries::kOdometry:
     case Carries::kScan:
+    case Carries::kTwist:
+    case Carries::kTwistStamped:
+    case Carries::kAckermann:
       return;
   }
 }

@@ -9,23 +9,23 @@
 
 #include "dds/participant.h"
 #include "koord/node/cells.h"
+#include "platform/senses.h"
 #include "platform/topics.h"
 #include "runtime/rounds/settings.h"
 
 namespace rondo::platform {
 
-using koord::semantics::Heap;
-using koord::semantics::Word;
-using runtime::rounds::Time;
-
 /// Sends what the actuators of one robot are told to topics of ROS 2, on a thread of its own: who gives an order does not wait.
+/// Where a robot is driven by velocities, the controller of its model goes to where it is told, fifty times a second, by what
+/// the sensors say; without them, and at the end, it stands still.
 /// Looks at the clock before each message: none is sent after the time until which it may take effect. What nobody listened
 /// to is sent again when somebody does.
 class Orders {
  public:
   /// @param ports  of the program; outlives this, as do the others.
+  /// @param senses  of the same robot.
   Orders(const koord::Model& model, const sim::Fleet& fleet, const std::vector<sim::Port>& ports,
-         size_t robot);
+         size_t robot, Senses& senses);
   Orders(const Orders&) = delete;
   Orders& operator=(const Orders&) = delete;
   ~Orders();
@@ -55,12 +55,17 @@ class Orders {
     bool due = false;                 // to be sent
     bool unheard = false;             // sent, and nobody was there
     bool always = false;              // whatever time it is
+    std::unique_ptr<sim::Body> body;  // its controller, of what is driven
   };
   void Run();
   void Send(const Line& line) const;
+  void Drive(Line& line);
+  void Publish(const Line& line, const sim::Twist& twist) const;
 
   const koord::Model& model_;
   const sim::Fleet& fleet_;
+  Senses& senses_;
+  bool drives_ = false;
   std::vector<Line> lines_;
   mutable std::mutex mutex_;
   std::condition_variable changed_, sent_;

@@ -124,6 +124,9 @@ void Senses::Hear(size_t number, std::string_view bytes) {
       return with(ros::geometry_msgs::Point(), [&](Heard& h, const auto& m) { numbers(h, PointOf(m)); });
     case Carries::kPose:
     case Carries::kPath:
+    case Carries::kTwist:
+    case Carries::kTwistStamped:
+    case Carries::kAckermann:
       return;
   }
 }
@@ -225,6 +228,9 @@ void Senses::Read(size_t robot, uint64_t, koord::node::Cell cell, std::span<Word
       return sim::WritePoint(numbers, words.data());
     case Carries::kPose:
     case Carries::kPath:
+    case Carries::kTwist:
+    case Carries::kTwistStamped:
+    case Carries::kAckermann:
       return;
   }
 }

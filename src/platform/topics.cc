@@ -1,8 +1,13 @@
 #include "platform/topics.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cmath>
+#include <set>
 
+#include "lang/suggest.h"
+#include "ros/ackermann_msgs.h"
 #include "ros/names.h"
 #include "ros/nav_msgs.h"
 #include "ros/sensor_msgs.h"
@@ -57,6 +62,9 @@ std::string UsualName(Carries carries, const std::string& port) {
     case Carries::kBool:
     case Carries::kNumber:
     case Carries::kPoint:
+    case Carries::kTwist:
+    case Carries::kTwistStamped:
+    case Carries::kAckermann:
       break;
   }
   return port;
@@ -72,11 +80,49 @@ std::optional<Topic> TopicOf(const koord::Model& model, const sim::Fleet& fleet,
   topic.carries = CarriedBy(port, robot);
   const auto said = fleet.ros.ports.find(topic.port);
   const bool named = said != fleet.ros.ports.end();
+  if (named && said->second.via == sim::PortVia::kTwist)
+    topic.carries = said->second.stamped ? Carries::kTwistStamped : Carries::kTwist;
+  if (named && said->second.via == sim::PortVia::kAckermann) topic.carries = Carries::kAckermann;
   if (port.role == PortRole::kReached && !port.own[robot] && !named) return std::nullopt;
   topic.name = ros::FullName(fleet.robots[robot].node_namespace,
                              named ? said->second.topic : UsualName(topic.carries, topic.port));
   topic.max_age = named && said->second.max_age > 0 ? said->second.max_age : 5 * fleet.delta;
   return topic;
+}
+
+void CheckPorts(const koord::Model& model, const sim::Fleet& fleet, const std::vector<sim::Port>& ports,
+                diag::Diagnostics& diagnostics) {
+  std::set<std::string> known;
+  for (const sim::Port& port : ports) {
+    for (size_t r = 0; r < fleet.robots.size(); ++r) {
+      const koord::Variable& variable = model.variables[port.variable];
+      const std::string name = variable.name.substr(variable.module.size() + 1);
+      known.insert(name);
+      const auto said = fleet.ros.ports.find(name);
+      if (said == fleet.ros.ports.end() || said->second.via == sim::PortVia::kTopic) continue;
+      const bool goes = port.role == PortRole::kTarget || port.role == PortRole::kPath;
+      const auto body = fleet.robots[r].make();
+      body->Place(fleet.robots[r].position, fleet.robots[r].yaw);
+      const bool steers = said->second.via == sim::PortVia::kAckermann;
+      if (goes && body->Told() && (!steers || fleet.robots[r].model == "car")) continue;
+      auto& report = diagnostics.Report(
+          diag::Kind::kFleetValue, said->second.span,
+          !goes ? fmt::format("`{}` does not say where to go, so it cannot be made of velocities", name)
+                : fmt::format("`{}` is a `{}`, which is not driven by {}", fleet.robots[r].name,
+                              fleet.robots[r].model,
+                              steers ? "an angle of steering" : "velocities in the plane"));
+      report.Help("name a topic for it: `{ ros2 = \"goal_pose\" }`");
+      break;
+    }
+  }
+  for (const auto& [name, port] : fleet.ros.ports) {
+    if (known.contains(name)) continue;
+    const std::string near = lang::Suggest(name, {known.begin(), known.end()});
+    auto& report = diagnostics.Report(diag::Kind::kFleetValue, port.span,
+                                      fmt::format("the program has no port `{}`", name));
+    report.Help(near.empty() ? fmt::format("it has {}", fmt::join(known, ", "))
+                             : fmt::format("did you mean `{}`?", near));
+  }
 }
 
 const ros::Message& TypeOf(Carries carries) {
@@ -95,6 +141,12 @@ const ros::Message& TypeOf(Carries carries) {
       return ros::std_msgs::Float64::kMessage;
     case Carries::kPoint:
       return ros::geometry_msgs::Point::kMessage;
+    case Carries::kTwist:
+      return ros::geometry_msgs::Twist::kMessage;
+    case Carries::kTwistStamped:
+      return ros::geometry_msgs::TwistStamped::kMessage;
+    case Carries::kAckermann:
+      return ros::ackermann_msgs::AckermannDriveStamped::kMessage;
   }
   return ros::std_msgs::Empty::kMessage;
 }

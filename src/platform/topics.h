@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "koord/check/model.h"
 #include "ros/geometry_msgs.h"
@@ -15,14 +16,22 @@ namespace rondo::platform {
 
 /// Names what a topic carries.
 enum class Carries : uint8_t {
-  kOdometry,  ///< nav_msgs/Odometry: where the robot is, and how fast
-  kScan,      ///< sensor_msgs/LaserScan
-  kPose,      ///< geometry_msgs/PoseStamped: where to go
-  kPath,      ///< nav_msgs/Path: which way to go
-  kBool,      ///< std_msgs/Bool
-  kNumber,    ///< std_msgs/Float64
-  kPoint,     ///< geometry_msgs/Point
+  kOdometry,      ///< nav_msgs/Odometry: where the robot is, and how fast
+  kScan,          ///< sensor_msgs/LaserScan
+  kPose,          ///< geometry_msgs/PoseStamped: where to go
+  kPath,          ///< nav_msgs/Path: which way to go
+  kBool,          ///< std_msgs/Bool
+  kNumber,        ///< std_msgs/Float64
+  kPoint,         ///< geometry_msgs/Point
+  kTwist,         ///< geometry_msgs/Twist: how to move; the robot's node has the controller
+  kTwistStamped,  ///< geometry_msgs/TwistStamped: the same
+  kAckermann,     ///< ackermann_msgs/AckermannDriveStamped: the same
 };
+
+/// Reports whether a topic carries how to move, from moment to moment.
+constexpr bool Drives(Carries carries) {
+  return carries == Carries::kTwist || carries == Carries::kTwistStamped || carries == Carries::kAckermann;
+}
 
 /// Says on which topic a port is.
 struct Topic {
@@ -36,6 +45,10 @@ struct Topic {
 /// names a topic: the robot finds out by itself whether it is where it was told to go.
 std::optional<Topic> TopicOf(const koord::Model& model, const sim::Fleet& fleet, size_t robot,
                              const sim::Port& port);
+
+/// Reports ports that a fleet connects with what they are not, or that the program does not have.
+void CheckPorts(const koord::Model& model, const sim::Fleet& fleet, const std::vector<sim::Port>& ports,
+                diag::Diagnostics& diagnostics);
 
 /// Returns the type of the messages on it.
 const ros::Message& TypeOf(Carries carries);

@@ -47,9 +47,22 @@ void Body::Follow(std::vector<Point> path) {
   NewCommand();
 }
 
-bool Body::Step(double dt, Integrator integrator) {
+void Body::Decide(double dt) {
   const Point& next = way_.Next(position());
   Control(next, way_.last(), dt);
+}
+
+bool Body::Step(double dt, Integrator integrator) {
+  Decide(dt);
+  return Pass(dt, integrator);
+}
+
+bool Body::Drive(const Twist& twist, double dt, Integrator integrator) {
+  Tell(twist);
+  return Pass(dt, integrator);
+}
+
+bool Body::Pass(double dt, Integrator integrator) {
   if (!Advance(dt, integrator)) return false;
   AfterStep();
   way_.Pass(position(), dt);

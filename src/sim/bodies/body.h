@@ -33,6 +33,12 @@ struct BodyPort {
   bool settable = false;  ///< an actuator; others can only be read
 };
 
+/// Is how a robot in the plane is told to move, in its own frame: m/s and rad/s.
+struct Twist {
+  double forward = 0, left = 0, turn = 0;
+  double steer = 0;  ///< of what steers: the angle of the front wheels in radians
+};
+
 /// Models a robot's body with its controller, which goes through waypoints, one after the other. What a
 /// program writes to the port `target` is a path of one point.
 class Body {
@@ -50,6 +56,15 @@ class Body {
   /// Lets one period of the controller pass, `dt` seconds: the controller acts, then the body moves. Returns
   /// false if the state is no longer finite.
   bool Step(double dt, Integrator integrator);
+
+  /// Returns what the controller tells the wheels; nothing if the body is not driven by velocities in the plane.
+  virtual std::optional<Twist> Told() const { return std::nullopt; }
+  /// Puts a body that is driven so where it is measured to be; it goes on along its path.
+  void Put(const Point& position, double yaw) { Reset(position, yaw); }
+  /// Lets the controller act for a period of `dt` seconds; nothing moves.
+  void Decide(double dt);
+  /// Lets `dt` seconds pass in which the wheels do this, whatever the controller would say.
+  bool Drive(const Twist& twist, double dt, Integrator integrator);
 
   /// Reports whether it arrived at the last point of its path, within its tolerance, and stayed for its dwell
   /// time.
@@ -96,6 +111,8 @@ class Body {
   /// Sets the inputs for the next period of `dt` seconds, towards `target`. `last`: it is the end of the
   /// path.
   virtual void Control(const Point& target, bool last, double dt) = 0;
+  /// Sets what the wheels do in the next period.
+  virtual void Tell(const Twist&) {}
   /// Writes the derivative of the state `x` to `dx`, with the inputs held.
   virtual void Rate(std::span<const double> x, std::span<double> dx) const = 0;
   /// Lets `dt` seconds pass, with the inputs held: integrates `Rate`. Returns false as `Step` does.
@@ -104,6 +121,8 @@ class Body {
   virtual void AfterStep() {}
   /// Tells the controller that the path is a new one.
   virtual void NewCommand() {}
+
+  bool Pass(double dt, Integrator integrator);
 
   std::vector<double> state_;  ///< the first three are the position in metres, world frame
 

@@ -31,11 +31,13 @@ class Unicycle final : public Body {
   std::vector<BodyParameter> Parameters() const override;
   double yaw() const override { return state_[3]; }
   Point velocity() const override;
+  std::optional<Twist> Told() const override;
 
  protected:
   void Prepare() override;
   void Reset(const Point& position, double yaw) override;
   void Control(const Point& target, bool last, double dt) override;
+  void Tell(const Twist& twist) override;
   void Rate(std::span<const double> x, std::span<double> dx) const override;
 
  private:
@@ -49,11 +51,13 @@ class Car final : public Body {
   std::vector<BodyParameter> Parameters() const override;
   double yaw() const override { return state_[3]; }
   Point velocity() const override;
+  std::optional<Twist> Told() const override;
 
  protected:
   void Prepare() override;
   void Reset(const Point& position, double yaw) override;
   void Control(const Point& target, bool last, double dt) override;
+  void Tell(const Twist& twist) override;
   void Rate(std::span<const double> x, std::span<double> dx) const override;
 
  private:
@@ -67,11 +71,13 @@ class Cart final : public Body {
   std::vector<BodyParameter> Parameters() const override;
   double yaw() const override { return state_[3]; }
   Point velocity() const override { return {state_[4], state_[5], 0}; }
+  std::optional<Twist> Told() const override;
 
  protected:
   void Prepare() override;
   void Reset(const Point& position, double yaw) override;
   void Control(const Point& target, bool last, double dt) override;
+  void Tell(const Twist& twist) override;
   void Rate(std::span<const double> x, std::span<double> dx) const override;
 
  private:

@@ -100,6 +100,13 @@ void Unicycle::Rate(std::span<const double> x, std::span<double> dx) const {
   dx[3] = turn_;
 }
 
+std::optional<Twist> Unicycle::Told() const { return Twist{speed_, 0, turn_, 0}; }
+
+void Unicycle::Tell(const Twist& twist) {
+  speed_ = std::clamp(twist.forward, -max_speed_, max_speed_);
+  turn_ = std::clamp(twist.turn, -max_turn_, max_turn_);
+}
+
 // -- car
 
 std::vector<BodyParameter> Car::Parameters() const {
@@ -150,6 +157,18 @@ void Car::Rate(std::span<const double> x, std::span<double> dx) const {
   dx[3] = speed_ * std::tan(steer_) / wheelbase_;
 }
 
+std::optional<Twist> Car::Told() const {
+  return Twist{speed_, 0, speed_ * std::tan(steer_) / wheelbase_, steer_};
+}
+
+// Who says how fast it is to turn says how far it has to steer.
+void Car::Tell(const Twist& twist) {
+  speed_ = std::clamp(twist.forward, -max_speed_, max_speed_);
+  const bool turns = twist.steer == 0 && twist.turn != 0;
+  const double steer = !turns ? twist.steer : speed_ == 0 ? 0 : std::atan(twist.turn * wheelbase_ / speed_);
+  steer_ = std::clamp(steer, -max_steer_, max_steer_);
+}
+
 // -- cart
 
 std::vector<BodyParameter> Cart::Parameters() const {
@@ -178,6 +197,18 @@ void Cart::Rate(std::span<const double> x, std::span<double> dx) const {
   dx[2] = dx[3] = 0;
   dx[4] = (wanted_[0] - x[4]) / lag_;
   dx[5] = (wanted_[1] - x[5]) / lag_;
+}
+
+std::optional<Twist> Cart::Told() const {
+  const double c = std::cos(yaw()), n = std::sin(yaw());
+  return Twist{c * wanted_[0] + n * wanted_[1], c * wanted_[1] - n * wanted_[0], 0, 0};
+}
+
+void Cart::Tell(const Twist& twist) {
+  const double c = std::cos(yaw()), n = std::sin(yaw());
+  const double slow = Scale(std::hypot(twist.forward, twist.left), max_speed_);
+  wanted_[0] = slow * (c * twist.forward - n * twist.left);
+  wanted_[1] = slow * (n * twist.forward + c * twist.left);
 }
 
 }  // namespace rondo::sim

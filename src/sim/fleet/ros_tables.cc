@@ -21,18 +21,31 @@ void ReadPorts(Tables& tables, const toml::table& table, FleetRos& ros) {
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
     const toml::table* port = node.as_table();
-    if (port == nullptr || !port->contains("ros2")) {
-      tables.Wrong(tables.At(node), fmt::format(R"(`{}` needs a topic, as in {{ ros2 = "odom" }})", name));
+    const char* way = nullptr;
+    for (const char* key : {"ros2", "nav2", "cmd_vel", "ackermann"}) {
+      if (port == nullptr || !port->contains(key)) continue;
+      if (way != nullptr)
+        tables.Wrong(tables.At(node), fmt::format("`{}` has two topics: `{}` and `{}`", name, way, key));
+      way = key;
+    }
+    if (way == nullptr) {
+      tables.Wrong(
+          tables.At(node),
+          fmt::format(R"(`{}` needs a topic, as in {{ ros2 = "odom" }} or {{ cmd_vel = "cmd_vel" }})", name));
       continue;
     }
-    tables.Known(*port, {"ros2", "max_age"}, "a port");
+    tables.Known(*port, {"ros2", "nav2", "cmd_vel", "ackermann", "max_age", "stamped"}, "a port");
     FleetPort& p = ros.ports[name];
     p.span = tables.At(node);
-    p.topic = Text(tables, *port, "ros2", "\"odom\"");
+    p.via = way == std::string("cmd_vel")     ? PortVia::kTwist
+            : way == std::string("ackermann") ? PortVia::kAckermann
+                                              : PortVia::kTopic;
+    p.topic = Text(tables, *port, way, "\"odom\"");
+    p.stamped = tables.Flag(*port, "stamped", false);
     p.max_age = tables.Number(*port, "max_age", 0, 1e-3, 1e4);
     if (!p.topic.empty() && !ros::IsName(p.topic))
       tables.Wrong(
-          tables.At(*port->get("ros2")),
+          tables.At(*port->get(way)),
           "a topic has letters, digits, `_` and `/`; no part begins with a digit, and there is no `__`");
   }
 }

@@ -9,10 +9,19 @@
 /// What fleet files say about robots that are reached over ROS 2.
 namespace rondo::sim {
 
+/// Names what a port of the program is connected with.
+enum class PortVia : uint8_t {
+  kTopic,      ///< a topic with the value of the port itself
+  kTwist,      ///< a topic with velocities (`cmd_vel`): the controller of the model is in the robot's node
+  kAckermann,  ///< a topic with a speed and an angle of steering; the same
+};
+
 /// Says on which topic a port of the program is.
 struct FleetPort {
-  std::string topic;   ///< in the namespace of the robot, unless it begins with `/`
-  double max_age = 0;  ///< seconds after which what was read last is stale; 0: five rounds
+  PortVia via = PortVia::kTopic;
+  bool stamped = false;  ///< of kTwist: TwistStamped
+  std::string topic;     ///< in the namespace of the robot, unless it begins with `/`
+  double max_age = 0;    ///< seconds after which what was read last is stale; 0: five rounds
   diag::Span span;
 };
 
