@@ -7,11 +7,14 @@ A header with a source of its name is the first that the source includes, so bui
 nothing but the precompiled headers. What those provide, each header has to include itself: this is checked by the
 names that it uses. A header without a source is compiled alone, without precompiled headers.
 """
+import atexit
 import functools
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent / "src"
 
@@ -48,14 +51,31 @@ def without_comments(text):
     return re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', "", text, flags=re.S)
 
 
+def made_of_messages(header):
+    """Headers that tools/ros_messages.py makes of src/ros/msg."""
+    path = pathlib.PurePosixPath(header)
+    return path.parent.name == "ros" and (ROOT / "ros" / "msg" / path.stem).is_dir()
+
+
 @functools.cache
 def included_by(header):
     """The foreign headers that a header of ours includes, itself or by others of ours."""
+    if made_of_messages(header):
+        return {"array", "string", "vector"} | included_by("ros/cdr.h") | included_by("ros/message.h")
     text = (ROOT / header).read_text(encoding="utf-8")
     found = set(re.findall(r"#include <([^>]+)>", text))
     for other in re.findall(r'#include "([^"]+)"', text):
         found |= included_by(other)
     return found
+
+
+@functools.cache
+def messages():
+    """A folder with the headers of messages."""
+    folder = tempfile.mkdtemp(prefix="rondo-messages-")
+    atexit.register(shutil.rmtree, folder)
+    subprocess.run([sys.executable, str(ROOT.parent / "tools/ros_messages.py"), str(ROOT / "ros/msg"), folder], check=True)
+    return folder
 
 
 def missing(name):
@@ -85,7 +105,7 @@ def main():
             if not first or first.group(1)[1:] != name:
                 problems.append(f"{source.relative_to(ROOT)}: includes something before {name}")
         else:
-            result = subprocess.run(sys.argv[1:] + ["-std=c++20", "-fsyntax-only", "-I", str(ROOT), "-x", "c++", "-"],
+            result = subprocess.run(sys.argv[1:] + ["-std=c++20", "-fsyntax-only", "-I", str(ROOT), "-I", messages(), "-x", "c++", "-"],
                                     input=f'#include "{name}"\n', text=True, capture_output=True)
             if result.returncode:
                 problems.append(f"{name}: does not compile alone:\n{result.stderr}")

@@ -193,7 +193,7 @@ base::Result<std::unique_ptr<Participant>> Participant::Open(const Network& netw
   p->announcements_ = dds_create_writer(p->entity_, entity.value(), qos.get(), nullptr);
   if (p->announcements_ < 0) return Failed("cannot tell of nodes", p->announcements_);
   p->graph_ = std::make_unique<Subscription>(
-      *p, 0, [self = p.get()](std::string_view bytes, const Received&) { self->Hear(bytes); });
+      *p, [self = p.get()](std::string_view bytes, const Received&) { self->Hear(bytes); });
   qos = Policies({.transient_local = true, .depth = 0}, hash);
   dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
   dds_listener_t* listener = dds_create_listener(p->graph_.get());
@@ -256,7 +256,7 @@ base::Result<std::unique_ptr<Subscription>> Participant::Subscribe(size_t node, 
   if (!entity.ok()) return entity.error();
   const QosPointer policies = Policies(qos, std::string(type.hash));
   if (from == From::kOthers) dds_qset_ignorelocal(policies.get(), DDS_IGNORELOCAL_PARTICIPANT);
-  auto subscription = std::make_unique<Subscription>(*this, 0, std::move(receive));
+  auto subscription = std::make_unique<Subscription>(*this, std::move(receive));
   // A listener that comes later misses what came before it.
   dds_listener_t* listener = dds_create_listener(subscription.get());
   dds_lset_data_available(listener, Arrive);

@@ -61,21 +61,22 @@ class Publisher {
 /// Receives messages of one topic while it lives.
 class Subscription {
  public:
-  Subscription(Participant& participant, int32_t reader, Receive receive)
-      : receive(std::move(receive)), participant_(participant), reader_(reader) {}
+  Subscription(Participant& participant, Receive receives)
+      : receive(std::move(receives)), participant_(participant) {}
   Subscription(const Subscription&) = delete;
   Subscription& operator=(const Subscription&) = delete;
   ~Subscription();
 
   /// Returns how many writers are connected.
   size_t matched() const;
+  /// Says which reader of the library it stands for.
   void Adopt(int32_t reader) { reader_ = reader; }
 
   const Receive receive;
 
  private:
   Participant& participant_;
-  int32_t reader_;
+  int32_t reader_ = 0;
 };
 
 /// Is a node of ROS 2.

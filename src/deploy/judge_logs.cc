@@ -97,6 +97,29 @@ class Teller {
   std::map<uint32_t, const Entry*> said_;  // by robot: last
 };
 
+// Of a robot that was killed, the last half second may be missing: what only it could have said is not held against the others,
+// as long as it is one of their team.
+void Excuse(const RobotLog& log, const history::Record& record, LogsReport& report) {
+  const auto robot = log.run.value("robot", uint32_t{0});
+  int64_t last = 0;
+  std::set<uint64_t> epochs;
+  for (const Entry& e : record.entries) {
+    if (e.robot == robot) last = std::max(last, e.time);
+    if (e.kind != Kind::kAdopted || e.what >= record.members.size()) continue;
+    if (std::ranges::find(record.members[e.what], robot, &history::Life::robot) !=
+        record.members[e.what].end())
+      epochs.insert(e.epoch);
+  }
+  std::erase_if(report.findings, [&](const history::Finding& f) {
+    const Entry& e = record.entries[f.entry];
+    if (f.wrong == history::Wrong::kDiverged || f.wrong == history::Wrong::kTwice) return false;
+    return f.wrong == history::Wrong::kLost || (epochs.contains(e.epoch) && e.time >= last);
+  });
+  const double time = record.entries.empty() ? 0 : Seconds(last - record.entries.front().time);
+  report.unchecked.push_back(fmt::format(
+      "what `{}` would tell of the time after {:.3f} s: it is cut off there", log.path, std::max(0.0, time)));
+}
+
 // Each final state, once, in order; and, as long as nobody fell back, what the sensors said at the start of the next round
 // against what controllers promise of the time between.
 void Monitored(const FleetRecord& record, Replica& replica, LogsReport& report,
@@ -179,13 +202,9 @@ base::Result<LogsReport> JudgeLogs(const std::vector<RobotLog>& logs, const koor
     history::Judge judge(replica->team(), [&](uint64_t, uint64_t round) { answers.About(round); });
     report.findings = judge.Check(record.record, stop);
     report.explained = judge.rounds();
-    const bool cut = std::ranges::any_of(logs, [](const RobotLog& log) { return !log.complete; });
-    // Of a robot that was killed, the last half second may be missing: what only it could have said.
-    if (cut)
-      std::erase_if(report.findings, [](const history::Finding& f) {
-        return f.wrong == history::Wrong::kTooEarly || f.wrong == history::Wrong::kLost;
-      });
-    if (cut) report.unchecked.emplace_back("whether a robot acted before a majority knew: a log was cut off");
+    for (const RobotLog& log : logs) {
+      if (!log.complete) Excuse(log, record.record, report);
+    }
   }
   Monitored(record, *replica, report, diagnostics);
   return report;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/counted.h"
+#include "base/file.h"
 #include "driver/command.h"
 #include "driver/logs_text.h"
 #include "driver/terminal.h"
@@ -25,6 +26,7 @@ struct Options {
   std::string spec;
   std::string logs;
   std::string trace;
+  std::string ros2;
   std::optional<uint64_t> seed;
   double duration = 0;
   bool fail_on_collision = false;
@@ -123,11 +125,55 @@ ExitStatus Fail(const Options& options, const workspace::Session& session, const
   return ExitStatus::kRejected;
 }
 
+// A description for `ros2 launch`, which is Python.
+ExitStatus WriteDescription(const Options& options, const runs::RobotProgram& program) {
+  const auto quoted = [](const std::string& text) {
+    return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  };
+  std::string names;
+  for (const sim::FleetRobot& robot : program.fleet.robots) names += quoted(robot.name) + ", ";
+  const std::string text = fmt::format(
+      R"py(# Runs the robots of a fleet: `ros2 launch {0}`, or one of them: `ros2 launch {0} robot:=NAME`. Made by `rondo launch --ros2`.
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, ExecuteProcess
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration, PythonExpression
+
+ROBOTS = [{1}]
+
+
+def generate_launch_description():
+    robot = LaunchConfiguration("robot")
+    actions = [
+        DeclareLaunchArgument("robot", default_value="", description="which robot; default: all"),
+        DeclareLaunchArgument("program", default_value={2}, description="the Koord program"),
+        DeclareLaunchArgument("fleet", default_value={3}, description="the fleet"),
+        DeclareLaunchArgument("session", default_value="0", description="another number for each run with `--state`"),
+    ]
+    for name in ROBOTS:
+        actions.append(ExecuteProcess(
+            cmd=["rondo", "run", LaunchConfiguration("program"), "--fleet", LaunchConfiguration("fleet"), "--robot", name,
+                 "--session", LaunchConfiguration("session"), "--log", name + ".mcap"],
+            output="screen", condition=IfCondition(PythonExpression(["'", robot, "' in ('', '", name, "')"]))))
+    return LaunchDescription(actions)
+)py",
+      fs::path(options.ros2).filename().string(), names, quoted(fs::absolute(program.files.program).string()),
+      quoted(fs::absolute(program.files.fleet).string()));
+  const auto written = base::WriteFileAtomically(options.ros2, text);
+  if (!written.ok()) {
+    PrintFailure(fmt::format("cannot write `{}`: {}", options.ros2, written.error().message));
+    return ExitStatus::kRejected;
+  }
+  Print(fmt::format("wrote {}\n", options.ros2));
+  return ExitStatus::kEstablished;
+}
+
 ExitStatus Run(const Options& options) {
   workspace::Session session;
   const auto program = runs::LoadRobotProgram(
       runs::FindSimulationFiles(options.file, options.spec, options.fleet), options.seed, session);
   if (!program) return Fail(options, session, {});
+  if (!options.ros2.empty()) return WriteDescription(options, *program);
   runs::LaunchOptions launch;
   launch.executable = fs::read_symlink("/proc/self/exe").string();
   launch.duration = options.duration;
@@ -208,6 +254,8 @@ void AddLaunchVerb(CLI::App& app, ExitStatus& status) {
   verb.Option("--logs", options->logs,
               "a folder for what each robot logs and says; default: it is kept only if something is wrong");
   verb.Option("--trace", options->trace, "write where the bodies are into this file (MCAP)");
+  verb.Option("--ros2", options->ros2,
+              "write a file for `ros2 launch` that runs the robots, and start nothing");
   verb.Flag("--fail-on-collision", options->fail_on_collision, "exit status 1 if robots touch anything");
   verb.Flag("--json", options->json, "the result as JSON on standard output");
   verb.Footer(

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 /// Common Data Representation, version 1 (OMG DDS-XTYPES 7.4.1), of final types: what ROS 2 sends.
 namespace rondo::ros {

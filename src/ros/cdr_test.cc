@@ -104,7 +104,9 @@ TEST(Cdr, DamagedMessagesAreRefusedOrRead) {
     std::string damaged = bytes;
     for (int k = 0; k < 3; ++k) damaged[random() % damaged.size()] = static_cast<char>(random());
     nav_msgs::Path path;
-    if (Parse(damaged, path)) EXPECT_LE(path.poses.size() * 70, damaged.size());
+    if (Parse(damaged, path)) {
+      EXPECT_LE(path.poses.size() * 70, damaged.size());
+    }
     visualization_msgs::MarkerArray markers;
     Parse(damaged, markers);
   }

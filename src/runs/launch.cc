@@ -203,7 +203,9 @@ class Launcher {
     const std::lock_guard lock(mutex_);
     for (const sim::FleetRobot& robot : program_.fleet.robots) {
       const auto known = statuses_.find(robot.name);
-      all.push_back(known == statuses_.end() ? deploy::RobotStatus{robot.name} : known->second);
+      all.emplace_back();
+      if (known != statuses_.end()) all.back() = known->second;
+      all.back().robot = robot.name;
     }
     return all;
   }

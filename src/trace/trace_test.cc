@@ -102,5 +102,31 @@ TEST(Trace, GridsGoThroughTheirMessage) {
   EXPECT_EQ(back.origin, grid.origin);
 }
 
+// A process that is killed leaves what it kept.
+TEST(Trace, WhatWasKeptIsReadAfterACrash) {
+  const std::string path = Temporary();
+  Writer writer = Writer::Open(path).value();
+  const uint16_t a = writer.Channel("/a", kText, "json");
+  writer.Message(a, 1, "{}");
+  writer.Keep();
+  writer.Message(a, 2, "{}");
+  const std::string left = ReadTrace(path + ".partial").value();
+  size_t count = 0;
+  const auto visit = [&](const Message& m) {
+    ++count;
+    return m.topic == "/a";
+  };
+  EXPECT_FALSE(ForEachMessage(left, visit).ok());
+  for (size_t cut = 0; cut <= left.size(); cut += 7) {
+    count = 0;
+    const auto read = ForEachMessageLeft(left.substr(0, left.size() - cut), visit);
+    EXPECT_EQ(read.ok(), left.size() - cut >= 8) << cut;
+    EXPECT_EQ(count, cut == 0 ? 1U : count);
+    EXPECT_LE(count, 1U);
+  }
+  EXPECT_TRUE(writer.Finish().ok());
+  std::filesystem::remove(path);
+}
+
 }  // namespace
 }  // namespace rondo::trace

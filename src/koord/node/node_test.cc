@@ -376,5 +376,53 @@ TEST_F(FallbackTest, FramesMayTellOfNoOtherActuator) {
   EXPECT_FALSE(accepts("n"));
 }
 
+// Its sensors cannot be relied on.
+class Blind : public Steady {
+ public:
+  bool Usable(size_t, uint64_t) override { return false; }
+};
+
+TEST(BlindNode, SkipsAndLeavesItsSensorsAsTheyWere) {
+  Compiled program(kProgram);
+  const auto team = program.Team(1);
+  Blind blind;
+  Node node(*team, 0, &blind, 1);
+  const auto round = [&](uint64_t r) {
+    Bytes payload;
+    node.Contribute(r, payload);
+    const Contribution contribution = Read(payload);
+    EXPECT_TRUE(node.Accepts(0, contribution.inputs, contribution.alternatives));
+    node.Apply(r, TurnsOf(r, {0}, {contribution}));
+    return contribution.alternatives.size();
+  };
+  round(0);  // nobody skips `init`, and what the sensors said last counts
+  EXPECT_FALSE(node.blind());
+  const std::vector<Word> before = node.state();
+  EXPECT_EQ(round(1), 0U);
+  EXPECT_TRUE(node.blind());
+  EXPECT_EQ(node.state(), before);
+  EXPECT_EQ(node.waits(), std::vector<uint32_t>{0});  // all events are left out
+  Steady steady;
+  node.SetSensors(&steady);
+  EXPECT_EQ(round(2), 1U);
+  EXPECT_FALSE(node.blind());
+  EXPECT_TRUE(node.waits().empty());
+}
+
+TEST(SkippingNode, SaysSo) {
+  Compiled program(kProgram);
+  const auto team = program.Team(1);
+  Steady steady;
+  Node node(*team, 0, &steady, 1);
+  node.SetChoose([](uint64_t, size_t, std::span<const semantics::Effect> effects) { return effects.size(); });
+  Bytes payload;
+  node.Contribute(1, payload);
+  EXPECT_TRUE(node.skips());
+  node.SetChoose({});
+  payload.clear();
+  node.Contribute(1, payload);
+  EXPECT_FALSE(node.skips());
+}
+
 }  // namespace
 }  // namespace rondo::koord::node

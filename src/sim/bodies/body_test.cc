@@ -88,5 +88,24 @@ TEST(Car, FollowsTheCircleOfItsSteering) {
   EXPECT_NEAR(Distance(body->position(), {0, radius, 0}), radius, 1e-6);
 }
 
+// The controller of a body on a robot: where it is measured to be is all that it knows.
+TEST(DrivenBody, GoesWhereTheControllerOfAnotherOneTellsIt) {
+  for (const char* model : {"unicycle", "car", "cart"}) {
+    const auto alone = MakeBody(model), wheels = MakeBody(model), controller = MakeBody(model);
+    for (const auto* body : {&alone, &wheels, &controller}) (*body)->Place({0, 0, 0}, 0.3);
+    for (const auto* body : {&alone, &controller}) (*body)->Follow({{2, 1, 0}, {3, -2, 0}});
+    for (int i = 0; i < 4000; ++i) {
+      ASSERT_TRUE(alone->Step(0.01, Integrator::kRungeKutta4));
+      controller->Put(wheels->position(), wheels->yaw());
+      controller->Decide(0.01);
+      ASSERT_TRUE(controller->Told());
+      ASSERT_TRUE(wheels->Drive(*controller->Told(), 0.01, Integrator::kRungeKutta4));
+    }
+    EXPECT_LT(Distance(wheels->position(), alone->position()), 1e-6) << model;
+    EXPECT_LT(Distance(wheels->position(), {3, -2, 0}), 0.3) << model;
+  }
+  EXPECT_FALSE(MakeBody("quadrotor")->Told());
+}
+
 }  // namespace
 }  // namespace rondo::sim

@@ -200,5 +200,54 @@ TEST(Fleet, WithoutARobotThereIsNothingToSimulate) {
   EXPECT_EQ(reading.diagnostics.all()[0].message, "the fleet has no robot");
 }
 
+TEST(Fleet, SaysHowRobotsAreReached) {
+  const Reading reading(R"(
+[ros]
+domain = 7
+profile = "wifi"
+interface = "wlan0"
+distribution = "humble"
+frame = "hall"
+[ports]
+psn = { ros2 = "odom", max_age = 0.2 }
+target = { cmd_vel = "/all/cmd_vel", stamped = true }
+[[robot]]
+name = "a"
+model = "car"
+position = [0, 0, 0]
+address = "10.0.0.1"
+namespace = "/hall/a"
+)");
+  EXPECT_TRUE(reading.diagnostics.all().empty());
+  const FleetRos& ros = reading.fleet.ros;
+  EXPECT_EQ(ros.network.domain, 7U);
+  EXPECT_EQ(ros.network.profile, dds::Profile::kWifi);
+  EXPECT_EQ(ros.network.interface, "wlan0");
+  EXPECT_TRUE(ros.network.old_identities);
+  EXPECT_EQ(ros.frame, "hall");
+  EXPECT_EQ(ros.ports.at("psn").max_age, 0.2);
+  EXPECT_EQ(ros.ports.at("target").via, PortVia::kTwist);
+  EXPECT_TRUE(ros.ports.at("target").stamped);
+  EXPECT_EQ(reading.fleet.robots[0].address, "10.0.0.1");
+  EXPECT_EQ(reading.fleet.robots[0].node_namespace, "hall/a");
+  EXPECT_EQ(Reading(kRobot).fleet.robots[0].node_namespace, "robot0");
+}
+
+TEST(Fleet, MistakesAboutTopicsHaveAPlace) {
+  EXPECT_EQ(MistakeIn("[ros]\ndomain = 300"), "300: `domain` must lie between 0 and 232");
+  EXPECT_EQ(MistakeIn("[ros]\nprofile = \"radio\""), "\"radio\": `profile` cannot be this");
+  EXPECT_EQ(MistakeIn("[ports]\npsn = \"odom\""),
+            "\"odom\": `psn` needs a topic, as in { ros2 = \"odom\" } or { cmd_vel = \"cmd_vel\" }");
+  // The places of values in tables of one line end where the library says.
+  EXPECT_NE(MistakeIn("[ports]\npsn = { ros2 = \"1odom\" }").find(": a topic has letters, digits"),
+            std::string::npos);
+  EXPECT_NE(MistakeIn("[ports]\npsn = { ros2 = \"a\", nav2 = \"b\" }")
+                .find(": `psn` has two topics: `ros2` and `nav2`"),
+            std::string::npos);
+  EXPECT_EQ(
+      Reading("[[robot]]\nmodel = \"car\"\nposition = [0, 0, 0]\ncount = 2\naddress = \"a\"\n").Mistake(),
+      "\"a\": `address` is of one robot: it does not go with `count`");
+}
+
 }  // namespace
 }  // namespace rondo::sim

@@ -22,11 +22,11 @@ void ReadPorts(Tables& tables, const toml::table& table, FleetRos& ros) {
     const std::string name(key.str());
     const toml::table* port = node.as_table();
     const char* way = nullptr;
-    for (const char* key : {"ros2", "nav2", "cmd_vel", "ackermann"}) {
-      if (port == nullptr || !port->contains(key)) continue;
+    for (const char* word : {"ros2", "nav2", "cmd_vel", "ackermann"}) {
+      if (port == nullptr || !port->contains(word)) continue;
       if (way != nullptr)
-        tables.Wrong(tables.At(node), fmt::format("`{}` has two topics: `{}` and `{}`", name, way, key));
-      way = key;
+        tables.Wrong(tables.At(node), fmt::format("`{}` has two topics: `{}` and `{}`", name, way, word));
+      way = word;
     }
     if (way == nullptr) {
       tables.Wrong(

@@ -48,6 +48,14 @@ bool FreeLine(const World& world, const Point& a, const Point& b, double clearan
   return true;
 }
 
+// Without the projections that other planners need: those of more than two dimensions are matrices that the library
+// allocates in one way and frees in another if it is built with other options than this.
+class Space : public ob::RealVectorStateSpace {
+ public:
+  using RealVectorStateSpace::RealVectorStateSpace;
+  void registerProjections() override {}
+};
+
 }  // namespace
 
 std::optional<std::vector<Point>> Plan(const World& world, const PlanRequest& request) {
@@ -59,7 +67,7 @@ std::optional<std::vector<Point>> Plan(const World& world, const PlanRequest& re
   ompl::msg::noOutputHandler();
   ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(request.seed % 0x7fffffffU + 1));
   const unsigned dimensions = request.flies ? 3 : 2;
-  auto space = std::make_shared<ob::RealVectorStateSpace>(dimensions);
+  auto space = std::make_shared<Space>(dimensions);
   ob::RealVectorBounds bounds(dimensions);
   for (unsigned i = 0; i < dimensions; ++i) {
     bounds.setLow(i, std::min({world.low[i], request.start[i], goal[i]}));

@@ -1,0 +1,236 @@
+#!/usr/bin/env python3
+"""Fleets as processes: `rondo run`, `rondo launch`, `rondo doctor`, `rondo replay LOG ...`, with nothing but DDS between them,
+and drivers of other vendors.
+
+  robots.py RONDO
+"""
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+RONDO = pathlib.Path(sys.argv[1]).resolve()
+DRIVER = RONDO.parent / "fastdds_driver"
+PYTHON = ROOT / "build/python/bin/python3"
+LINEFORM = str(ROOT / "examples/koord/lineform")
+TURTLES = ROOT / "examples/koord/turtlebots.toml"
+# A domain that other tests are not in.
+DOMAIN = 50 + os.getpid() % 40
+os.environ.update(ROS_DOMAIN_ID=str(DOMAIN), ROS_LOCALHOST_ONLY="1")
+os.environ.pop("CYCLONEDDS_URI", None)
+problems = []
+
+
+def check(what, good, *shown):
+    if not good:
+        problems.append(what)
+        print("FAILED:", what, *shown)
+
+
+def rondo(*arguments, **more):
+    return subprocess.run([str(RONDO), *map(str, arguments)], capture_output=True, text=True, timeout=240, **more)
+
+
+def launch(program, *arguments):
+    done = rondo("launch", program, "--json", *arguments)
+    try:
+        return done.returncode, json.loads(done.stdout)
+    except json.JSONDecodeError:
+        check("launch writes JSON", False, done.stdout, done.stderr)
+        return done.returncode, {"judged": {}, "robots": []}
+
+
+def clean(name, report, rounds):
+    judged = report.get("judged") or {}
+    check(f"{name}: rounds go on", judged.get("rounds", 0) >= rounds, judged)
+    check(f"{name}: each round is one of the program's", judged.get("explained", 0) >= rounds and judged.get("findings") == [], judged)
+    check(f"{name}: the specification is kept", judged.get("violations") == [], judged)
+
+
+def fleet(folder, name, *changes):
+    text = TURTLES.read_text()
+    for old, new in changes:
+        check(f"{old} is in the fleet", old in text)
+        text = text.replace(old, new)
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+def fleets(folder):
+    status, report = launch(LINEFORM, "--fleet", TURTLES, "--duration", 5, "--logs", folder / "logs")
+    clean("cmd_vel", report, 15)
+    check("cmd_vel: status", status == 0, status, report)
+    check("cmd_vel: they move", moved(folder / "logs" / "bot1.mcap"))
+    drones = fleet(folder, "drones.toml", ('model = "unicycle"', 'model = "quadrotor"'), ("position = [0, 0, 0]", "position = [0, 0, 1]"),
+                   ('target = { cmd_vel = "cmd_vel" }', ""), ("{ max_speed = 0.6 }", "{ tolerance = 0.2 }"))
+    status, report = launch(LINEFORM, "--fleet", drones, "--duration", 4)
+    clean("goal_pose", report, 12)
+    check("goal_pose: status", status == 0, status, report)
+    cars = fleet(folder, "cars.toml", ('model = "unicycle"', 'model = "car"'), ('cmd_vel = "cmd_vel"', 'ackermann = "drive"'))
+    status, report = launch(LINEFORM, "--fleet", cars, "--duration", 4)
+    clean("ackermann", report, 12)
+    check("ackermann: status", status == 0, status, report)
+    status, report = launch(ROOT / "examples/koord/delivery", "--duration", 30)
+    clean("delivery", report, 30)
+    check("delivery: every robot stopped", status == 3 and all(r["status"] == 0 for r in report["robots"]), status, report)
+
+
+def moved(log):
+    text = log.read_bytes().decode("latin-1")
+    seen = set(re.findall(r'"Motion.psn":\[{[^}]*},({[^}]*})', text))
+    return len(seen) > 5
+
+
+def logs(folder):
+    names = sorted((folder / "logs").glob("*.mcap"))
+    done = rondo("replay", *names, "--json")
+    judged = json.loads(done.stdout)
+    check("logs: nothing is wrong", done.returncode == 0 and judged["findings"] == [] and judged["violations"] == [], judged)
+    done = rondo("replay", *names[1:])
+    check("logs: one is missing", done.returncode == 3 and "logs of 3 of 4 robots" in done.stdout, done.stdout)
+    done = rondo("replay", names[0], *names)
+    check("logs: one is there twice", done.returncode == 1 and "is there twice" in done.stderr, done.stderr)
+    done = rondo("replay", *names, TURTLES)
+    check("logs: one is none", done.returncode == 1 and "not an MCAP file" in done.stderr, done.stderr)
+    bytes_ = names[2].read_bytes()
+    # Another state in the log of one robot: its stores differ from those of the others.
+    at = bytes_.index(b'"store":"', bytes_.index(b'"round":7,'))
+    end = bytes_.index(b'"', at + 9)
+    spot = at + 9 + (end - at - 9) // 2 // 2 * 2
+    other = bytearray(bytes_)
+    other[spot + 1] = ord("1") if other[spot + 1] != ord("1") else ord("2")
+    bad = folder / "bad.mcap"
+    bad.write_bytes(other)
+    done = rondo("replay", names[0], names[1], bad, names[3], "--json")
+    check("logs: robots disagree", done.returncode == 1, done.stdout, done.stderr)
+    cut = folder / "cut.mcap"
+    cut.write_bytes(bytes_[: len(bytes_) // 2])
+    done = rondo("replay", names[0], names[1], cut, names[3])
+    check("logs: one is cut off", done.returncode == 3 and "cut off" in done.stdout, done.stdout, done.stderr)
+
+
+def killed(folder, on_loss):
+    path = fleet(folder, f"{on_loss}.toml", ('on_loss = "evict"', f'on_loss = "{on_loss}"'))
+    process = subprocess.Popen([str(RONDO), "launch", LINEFORM, "--fleet", str(path), "--duration", "9", "--json", "--logs", folder / on_loss],
+                               stdout=subprocess.PIPE, text=True)
+    time.sleep(4)
+    check(f"{on_loss}: a robot is there to be killed", subprocess.run(["pkill", "-9", "-f", "[-]-robot bot2 "]).returncode == 0)
+    report = json.loads(process.communicate(timeout=120)[0])
+    judged = report["judged"]
+    fell = [h["time"] for h in judged["happenings"] if "falls back" in h["what"]]
+    check(f"{on_loss}: all others fall back", len(fell) >= 3, judged)
+    check(f"{on_loss}: nothing else is wrong", judged["findings"] == [] and judged["violations"] == [], judged)
+    if on_loss == "halt":
+        check("halt: the session is over", sorted(r["status"] for r in report["robots"]) == [-1, 1, 1, 1], report)
+        return
+    check("evict: all others end well", sorted(r["status"] for r in report["robots"]) == [-1, 0, 0, 0], report)
+    teams = [h["time"] for h in judged["happenings"] if h["what"] == "the team is bot0, bot1, bot3"]
+    check("evict: the others go on", len(teams) == 1 and teams[0] - min(fell) < 3, judged)
+    check("evict: rounds go on", judged["rounds"] > 25, judged)
+
+
+def interrupted(folder):
+    process = subprocess.Popen([str(RONDO), "launch", LINEFORM, "--fleet", str(TURTLES), "--logs", folder / "stop"], stdout=subprocess.PIPE, text=True)
+    time.sleep(3)
+    process.send_signal(signal.SIGINT)
+    text = process.communicate(timeout=60)[0]
+    check("Ctrl-C: it says so", process.returncode == 3 and "interrupted" in text, process.returncode, text)
+    check("Ctrl-C: nobody is left", subprocess.run(["pgrep", "-f", f"{folder}/stop/bot"], stdout=subprocess.DEVNULL).returncode == 1)
+    check("Ctrl-C: they stay where they are", "it stays where it is" in (folder / "stop/bot0.txt").read_text())
+
+
+def doctor(folder):
+    process = subprocess.Popen([str(RONDO), "launch", LINEFORM, "--fleet", str(TURTLES), "--duration", "60"], stdout=subprocess.PIPE)
+    time.sleep(3)
+    done = rondo("doctor", LINEFORM, "--fleet", TURTLES, "--json")
+    found = json.loads(done.stdout)
+    check("doctor: all is well", done.returncode == 0 and len(found["robots"]) == 4 and len(found["ways"]) == 4, found)
+    check("doctor: answers come", all(w["answered"] > 0.8 * w["asked"] and abs(w["ahead"]) < 0.02 for w in found["ways"]), found)
+    other = fleet(folder, "other.toml", ("lease = 1", "lease = 1.1"))
+    done = rondo("doctor", LINEFORM, "--fleet", other, "--seconds", 1.5)
+    check("doctor: other files", done.returncode == 1 and "it runs another program, specification or fleet" in done.stdout, done.stdout)
+    other = fleet(folder, "typed.toml", ('ros2 = "odom"', 'ros2 = "cmd_vel"'), ('cmd_vel = "cmd_vel"', 'ros2 = "odom"'))
+    done = rondo("doctor", LINEFORM, "--fleet", other, "--seconds", 1.5)
+    check("doctor: other types", done.returncode == 1 and "carries `geometry_msgs/msg/Twist`" in done.stdout, done.stdout)
+    subprocess.run(["pkill", "-9", "-f", "[-]-robot bot3 "])
+    time.sleep(2.5)
+    done = rondo("doctor", LINEFORM, "--fleet", TURTLES, "--seconds", 2)
+    check("doctor: one is gone", done.returncode == 1 and "bot3: nobody says anything of it" in done.stdout and "does not hear bot3" in done.stdout,
+          done.stdout)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60)
+    done = rondo("doctor")
+    check("doctor: of this machine", done.returncode == 0, done.stdout)
+    done = rondo("doctor", env=dict(os.environ, ROS_DOMAIN_ID="1000"))
+    check("doctor: a domain that cannot be", done.returncode == 1 and "ROS_DOMAIN_ID is `1000`" in done.stderr, done.stderr)
+
+
+SOLO = """
+using Motion:
+    sensors:
+        pos psn
+    actuators:
+        pos target
+Go:
+    eff:
+        Motion.target = pos(3, 2.5, 0)
+"""
+SOLO_FLEET = """
+[run]
+delta = 0.1
+[[robot]]
+name = "solo"
+model = "unicycle"
+position = [0, 0, 0]
+"""
+
+
+def vendors(folder):
+    (folder / "solo.koord").write_text(SOLO)
+    (folder / "solo.toml").write_text(SOLO_FLEET)
+    if DRIVER.exists():
+        process = subprocess.Popen([str(RONDO), "run", str(folder / "solo"), "--robot", "solo", "--duration", "4", "--json"], stdout=subprocess.PIPE)
+        driver = subprocess.run([str(DRIVER), str(DOMAIN), "solo", "9"], capture_output=True, text=True, timeout=60)
+        report = json.loads(process.communicate(timeout=60)[0])
+        check("Fast DDS drives a robot", report["status"] == 0 and report["rounds"] >= 30 and report["blind"] == 0, report)
+        check("Fast DDS is told where to go", re.fullmatch(r"goals \d+ at 3.000 2.500 in map; nodes /solo/rondo\n", driver.stdout), driver.stdout)
+    else:
+        print("note: Fast DDS is not there: `./dev setup` installs it")
+    process = subprocess.Popen([str(RONDO), "launch", str(folder / "solo"), "--duration", "8", "--json"], stdout=subprocess.PIPE)
+    time.sleep(1.5)
+    heard = subprocess.run([str(PYTHON), str(ROOT / "tests/peers/cyclonedds_listener.py"), str(DOMAIN), "solo", "5"], capture_output=True,
+                           text=True, timeout=60)
+    process.communicate(timeout=60)
+    check("another Cyclone DDS hears where a robot is", re.match(r"\d\d+ map solo/base_link \S+ \S+", heard.stdout), heard.stdout, heard.stderr)
+
+
+def refusals(folder):
+    done = rondo("run", LINEFORM, "--fleet", TURTLES, "--robot", "bott0")
+    check("run: a robot that does not exist", done.returncode == 1 and "did you mean `bot0`?" in done.stderr, done.stderr)
+    done = rondo("run", LINEFORM, "--fleet", TURTLES, "--robot", "bot0", "--log", "/dev/null/x")
+    check("run: a log that cannot be written", done.returncode == 1 and "cannot write `/dev/null/x`" in done.stderr, done.stderr)
+    drones = fleet(folder, "no.toml", ('model = "unicycle"', 'model = "quadrotor"'), ("{ max_speed = 0.6 }", "{ tolerance = 0.2 }"))
+    done = rondo("launch", LINEFORM, "--fleet", drones)
+    check("launch: drones have no wheels", done.returncode == 1 and "not driven by velocities" in done.stderr, done.stderr)
+    done = rondo("launch", LINEFORM, "--fleet", folder / "nosuch.toml", "--json")
+    check("launch: a fleet that does not exist", done.returncode == 1 and json.loads(done.stdout)["diagnostics"], done.stdout)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        for part in (refusals, fleets, logs, lambda f: killed(f, "evict"), lambda f: killed(f, "halt"), interrupted, doctor, vendors):
+            part(folder)
+    print(f"{len(problems)} problems")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
