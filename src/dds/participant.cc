@@ -94,13 +94,16 @@ Guid GuidOf(dds_entity_t entity) {
 }
 
 void Arrive(dds_entity_t reader, void* subscription) {
-  std::string bytes;
+  // Its memory is kept. Who is called may write, and be called again in this thread.
+  thread_local std::string kept;
+  std::string bytes = std::exchange(kept, {});
   dds_sample_info_t info;
   while (TakeRaw(reader, bytes, info)) {
     if (info.valid_data)
       static_cast<Subscription*>(subscription)
           ->receive(bytes, {info.source_timestamp, info.publication_handle});
   }
+  kept = std::move(bytes);
 }
 
 ros::Qos QosOf(const dds_qos_t* q) {

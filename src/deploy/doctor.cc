@@ -176,6 +176,15 @@ class Examination {
       if (!s.sensors.empty())
         Wrong(name, s.sensors,
               "look at the driver: is it running, and is its topic the one of `[ports]` in the fleet file?");
+      if (s.foreign > 0)
+        Wrong(name, "it hears somebody who runs another program, specification or fleet",
+              "copy the same three files to all robots");
+      if (s.phase == "outside" && s.strange > 0)
+        Wrong(name, "it hears robots of another session",
+              "start all robots with the same `--session`, or all without");
+      else if (s.phase == "outside" && s.unheard.empty())
+        Wrong(name, "it has not begun, though it hears all others",
+              "its disk, or that of others, may be of another run: another `--session` for all");
       if (s.phase == "halted")
         Wrong(name, "it lost the others and does not act any more",
               "start all robots again; `on_loss` in the fleet file says what happens then");

@@ -13,6 +13,7 @@ namespace rondo::deploy {
 
 using history::Entry;
 using history::Kind;
+using history::Wrong;
 using koord::semantics::Answer;
 
 namespace {
@@ -97,27 +98,59 @@ class Teller {
   std::map<uint32_t, const Entry*> said_;  // by robot: last
 };
 
-// Of a robot that was killed, the last half second may be missing: what only it could have said is not held against the others,
-// as long as it is one of their team.
-void Excuse(const RobotLog& log, const history::Record& record, LogsReport& report) {
-  const auto robot = log.run.value("robot", uint32_t{0});
-  int64_t last = 0;
+// What a log that is missing, or ends early, would have told is not held against the others, as long as its robot is one of
+// their team: nothing is said of it.
+void Excuse(history::Life life, int64_t from, const history::Record& record, LogsReport& report) {
   std::set<uint64_t> epochs;
   for (const Entry& e : record.entries) {
-    if (e.robot == robot) last = std::max(last, e.time);
     if (e.kind != Kind::kAdopted || e.what >= record.members.size()) continue;
-    if (std::ranges::find(record.members[e.what], robot, &history::Life::robot) !=
-        record.members[e.what].end())
+    if (std::ranges::find(record.members[e.what], life) != record.members[e.what].end())
       epochs.insert(e.epoch);
   }
   std::erase_if(report.findings, [&](const history::Finding& f) {
     const Entry& e = record.entries[f.entry];
-    if (f.wrong == history::Wrong::kDiverged || f.wrong == history::Wrong::kTwice) return false;
-    return f.wrong == history::Wrong::kLost || (epochs.contains(e.epoch) && e.time >= last);
+    if (f.wrong == Wrong::kDiverged || f.wrong == Wrong::kTwice) return false;
+    return f.wrong == Wrong::kLost || (epochs.contains(e.epoch) && e.time >= from);
   });
-  const double time = record.entries.empty() ? 0 : Seconds(last - record.entries.front().time);
-  report.unchecked.push_back(fmt::format(
-      "what `{}` would tell of the time after {:.3f} s: it is cut off there", log.path, std::max(0.0, time)));
+}
+
+// Logs that are cut off, and lives of robots that have none.
+void ExcuseMissing(const std::vector<RobotLog>& logs, const history::Record& record, const sim::Fleet& fleet,
+                   LogsReport& report) {
+  const int64_t start = record.entries.empty() ? 0 : record.entries.front().time;
+  std::set<history::Life> there;
+  for (const RobotLog& log : logs) {
+    there.insert({log.robot, log.life});
+    if (log.complete) continue;
+    int64_t last = start;
+    for (const Entry& e : record.entries) {
+      if (e.robot == log.robot && e.incarnation == log.life) last = std::max(last, e.time);
+    }
+    Excuse({log.robot, log.life}, last, record, report);
+    report.unchecked.push_back(
+        fmt::format("what `{}` would tell of the time after {:.3f} s: it is cut off there", log.path,
+                    Seconds(last - start)));
+  }
+  std::set<history::Life> missing;
+  for (const auto& members : record.members) {
+    for (const history::Life& life : members) {
+      if (!there.contains(life)) missing.insert(life);
+    }
+  }
+  for (const history::Life& life : missing) {
+    Excuse(life, INT64_MIN, record, report);
+    report.unchecked.push_back(
+        fmt::format("what a life of {} would tell of which there is no log", fleet.robots[life.robot].name));
+  }
+}
+
+// Without one clock, who was first cannot be told.
+void ExcuseClocks(LogsReport& report) {
+  std::erase_if(report.findings, [](const history::Finding& f) {
+    return f.wrong == Wrong::kTooEarly || f.wrong == Wrong::kTooLate || f.wrong == Wrong::kTwoTeams ||
+           f.wrong == Wrong::kLost || f.wrong == Wrong::kStarved;
+  });
+  report.unchecked.emplace_back("who acted when: the logs are of several machines, whose clocks are not one");
 }
 
 // Each final state, once, in order; and, as long as nobody fell back, what the sensors said at the start of the next round
@@ -127,6 +160,11 @@ void Monitored(const FleetRecord& record, Replica& replica, LogsReport& report,
   koord::semantics::Team& team = replica.team();
   for (const auto& part : team.unchecked())
     report.unchecked.push_back(fmt::format("{}: {}", part.name, part.reason));
+  const std::string last_long = ": on robots, rounds last as long as they take";
+  for (const auto& response : team.responses()) report.unchecked.push_back(response.name + last_long);
+  for (const auto& promise : team.promises()) {
+    if (promise.at_end) report.unchecked.push_back(promise.name + last_long);
+  }
   sim::Monitor monitor(team, diagnostics, [](const sim::Violation&, bool) {});
   std::map<std::pair<uint64_t, uint64_t>, size_t> stored;  // by place: images
   std::set<uint64_t> seen;
@@ -137,11 +175,13 @@ void Monitored(const FleetRecord& record, Replica& replica, LogsReport& report,
     if (e.kind == Kind::kFellBack) settled.clear();
     if (e.kind == Kind::kStored) stored[{e.epoch, e.round}] = e.what;
     const auto image = stored.find({e.epoch, e.round});
-    if (e.kind != Kind::kCommitted || e.round == 0 || image == stored.end() || !seen.insert(e.round).second)
+    if (e.kind != Kind::kCommitted || e.round == 0 || image == stored.end() ||
+        image->second >= record.record.images.size() || !seen.insert(e.round).second)
       continue;
     std::vector<Word> state = history::StateOf(team, record.record.images[image->second]);
     if (state.empty()) continue;
     const double time = Seconds(e.time - entries.front().time);
+    if (e.round == 1) monitor.Initially(state);
     if (!settled.empty() && last == std::pair(e.epoch, e.round - 1)) {
       std::vector<Word> now = settled;
       for (const koord::node::Cell cell : replica.node().cells().sensors()) {
@@ -150,13 +190,23 @@ void Monitored(const FleetRecord& record, Replica& replica, LogsReport& report,
           std::copy_n(state.begin() + at, replica.node().cells().Width(cell), now.begin() + at);
         }
       }
-      monitor.During(time, now, settled, true);
+      monitor.During(time, now, settled, false);
     }
     monitor.Settled(time, state, true);
     last = {e.epoch, e.round};
     settled = std::move(state);
   }
+  monitor.Summary(report.length);
   report.violations = monitor.violations();
+  if (seen.empty()) report.unchecked.emplace_back("the specification: no state was final");
+  std::map<std::pair<std::string, uint32_t>, sim::Violation> faults;
+  for (const FleetRecord::Fault& fault : record.faults) {
+    auto [it, fresh] = faults.try_emplace({fault.what, fault.robot});
+    if (fresh)
+      it->second = {fault.what, static_cast<int>(fault.robot), Seconds(fault.time - entries.front().time), 0};
+    ++it->second.count;
+  }
+  for (const auto& [_, violation] : faults) report.violations.push_back(violation);
 }
 
 }  // namespace
@@ -165,31 +215,34 @@ base::Result<LogsReport> JudgeLogs(const std::vector<RobotLog>& logs, const koor
                                    const sim::Fleet& fleet, const base::StopToken& stop,
                                    diag::Diagnostics& diagnostics) {
   if (logs.empty()) return base::Error{"there is no log"};
-  const nlohmann::json& first = logs[0].run;
-  std::set<std::pair<uint64_t, uint64_t>> lives;
+  std::set<history::Life> lives;
   for (const RobotLog& log : logs) {
-    for (const char* key : {"program", "spec", "fleet", "session"}) {
-      if (log.run.value(key, "") != first.value(key, ""))
-        return base::Error{fmt::format("`{}` and `{}` are not of one run: they differ in their {}",
-                                       logs[0].path, log.path, key)};
+    bool same = log.session == logs[0].session;
+    for (const char* key : {"program", "spec", "fleet"})
+      same = same && log.run.at(key) == logs[0].run.at(key);
+    if (!same) {
+      return base::Error{fmt::format("`{}` and `{}` are not of one run: their files or sessions differ",
+                                     logs[0].path, log.path)};
     }
-    if (!lives.emplace(log.run.value("robot", uint64_t{0}), log.run.value("life", uint64_t{0})).second)
+    if (!lives.insert({log.robot, log.life}).second)
       return base::Error{
           fmt::format("`{}` is there twice, or is the log of a robot that is there", log.path)};
   }
   const size_t before = diagnostics.errors();
   const std::vector<sim::Port> ports = sim::FindPorts(model, fleet.robots, diagnostics);
   if (diagnostics.errors() != before) return base::Error{};
-  const auto replica =
-      Replica::Make(model, fleet, ports, 0, first.value("seed", uint64_t{1}), nullptr, diagnostics);
+  const auto replica = Replica::Make(model, fleet, ports, 0, logs[0].seed, nullptr, diagnostics);
   if (replica == nullptr) return base::Error{};
-  const auto merged = Merged(logs, *replica);
+  auto merged = Merged(logs, *replica);
   if (!merged.ok()) return merged.error();
-  const FleetRecord& record = merged.value();
+  FleetRecord record = std::move(merged).value();
+  const runtime::rounds::Settings settings = sim::SettingsOf(fleet);
+  record.record.lease = settings.lease;
+  record.record.stop_time = settings.stop_time;
   LogsReport report;
   Teller(record, fleet, report).Run();
-  std::set<uint64_t> there;
-  for (const RobotLog& log : logs) there.insert(log.run.value("robot", uint64_t{0}));
+  std::set<uint32_t> there;
+  for (const RobotLog& log : logs) there.insert(log.robot);
   const bool lost = std::ranges::any_of(logs, [](const RobotLog& log) { return log.lost > 0; });
   Answers answers(*replica, model, record);
   replica->team().machine().SetHost(&answers);
@@ -202,10 +255,10 @@ base::Result<LogsReport> JudgeLogs(const std::vector<RobotLog>& logs, const koor
     history::Judge judge(replica->team(), [&](uint64_t, uint64_t round) { answers.About(round); });
     report.findings = judge.Check(record.record, stop);
     report.explained = judge.rounds();
-    for (const RobotLog& log : logs) {
-      if (!log.complete) Excuse(log, record.record, report);
-    }
+    ExcuseMissing(logs, record.record, fleet, report);
+    if (!record.one_clock) ExcuseClocks(report);
   }
+  if (stop.StopRequested()) report.unchecked.emplace_back("what comes later: interrupted");
   Monitored(record, *replica, report, diagnostics);
   return report;
 }

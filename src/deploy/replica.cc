@@ -34,6 +34,12 @@ std::unique_ptr<Replica> Replica::Make(const koord::Model& model, const sim::Fle
 
 std::optional<std::vector<Word>> Replica::StateOf(runtime::codec::View bytes) {
   if (!node_->Load(bytes)) return std::nullopt;
+  // Lists of states that nobody has any more.
+  if (team_->heap().words_in_use() > collect_at_) {
+    const std::span<const Word> states[] = {node_->state(), node_->real()};
+    team_->Collect(states);
+    collect_at_ = 1'000'000 + 2 * team_->heap().words_in_use();
+  }
   return node_->state();
 }
 

@@ -27,7 +27,7 @@ class Replica {
   /// Returns the state before `init`, as frames have it: the same on all robots.
   const runtime::codec::Bytes& before() const { return before_; }
 
-  /// Returns a state that a node saved; nothing if these bytes are none.
+  /// Returns a state that a node saved; nothing if these bytes are none. Lists of states that it returned before may be gone.
   std::optional<std::vector<Word>> StateOf(runtime::codec::View bytes);
 
  private:
@@ -40,6 +40,7 @@ class Replica {
   std::unique_ptr<koord::semantics::Team> team_;
   std::unique_ptr<koord::node::Node> node_;
   runtime::codec::Bytes before_;
+  size_t collect_at_ = 1'000'000;  // words of the heap
 };
 
 }  // namespace rondo::deploy

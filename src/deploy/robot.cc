@@ -50,9 +50,22 @@ uint64_t Agreement(const RobotOptions& options, const Replica& replica) {
   runtime::codec::Writer writer(bytes);
   for (const std::string* text : {&options.program, &options.spec, &options.fleet})
     writer.Block({reinterpret_cast<const uint8_t*>(text->data()), text->size()});
-  writer.Number(options.seed);
   writer.Block(replica.before());
   return runtime::codec::Sum(bytes);
+}
+
+// A log of an earlier life stays: `bot0.mcap`, `bot0.2.mcap`, ...
+std::string Unused(const std::string& wanted) {
+  std::error_code ignored;
+  const std::filesystem::path path(wanted);
+  std::string name = wanted;
+  for (int life = 2; std::filesystem::is_regular_file(name, ignored) ||
+                     std::filesystem::is_regular_file(name + ".partial", ignored);
+       ++life)
+    name =
+        (path.parent_path() / fmt::format("{}.{}{}", path.stem().string(), life, path.extension().string()))
+            .string();
+  return name;
 }
 
 class RobotProcess {
@@ -110,10 +123,19 @@ class RobotProcess {
           settings_, Node(), disk_.get(),
           record_ ? std::optional(runtime::codec::View(*record_)) : std::nullopt);
       std::thread thread([this] {
-        transport::Drive(*core_, *way_, ended_, [this](Time now, const rounds::Output& output) {
-          now_ = now;
-          std::visit([&](const auto& o) { Do(o); }, output);
-        });
+        transport::Drive(
+            *core_, *way_, ended_,
+            [this](Time now, const rounds::Output& output) {
+              now_ = now;
+              std::visit([&](const auto& o) { Do(o); }, output);
+            },
+            [this](Time now) {
+              now_ = now;
+              if (now - looked_at_ < kSecond / 10) return;
+              looked_at_ = now;
+              const std::lock_guard lock(mutex_);
+              Look();
+            });
       });
       Watch();
       ended_.RequestStop();
@@ -161,7 +183,8 @@ class RobotProcess {
     const LogHead head{
         self_, settings_.incarnation, settings_.session, options_.seed, settings_.lease, settings_.stop_time,
         names, options_.program_name, options_.program,  options_.spec, options_.fleet,  options_.files};
-    auto log = LogWriter::Open(options_.log, head, std::move(replica));
+    report_.log = Unused(options_.log);
+    auto log = LogWriter::Open(report_.log, head, std::move(replica));
     if (!log.ok()) return log.error();
     log_ = std::move(log).value();
     return true;
@@ -212,6 +235,7 @@ class RobotProcess {
     using Clock = std::chrono::steady_clock;
     auto next = Clock::now();
     bool blind = false;
+    int waited = 0;  // seconds
     while (true) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       const std::optional<RobotEnding> ending = Ending();
@@ -221,6 +245,7 @@ class RobotProcess {
         Publish(why);
         if (blind != !why.empty()) Tell(why.empty() ? "the sensors are usable again" : "skips: " + why, 30);
         blind = !why.empty();
+        Wait(waited++);
       }
       std::vector<std::pair<std::string, uint8_t>> news;
       {
@@ -232,6 +257,21 @@ class RobotProcess {
       report_.ending = *ending;
       return;
     }
+  }
+
+  // Says whom it waits for, in the beginning.
+  void Wait(int seconds) {
+    if (seconds % 10 != 2) return;
+    std::string text;
+    {
+      const std::lock_guard lock(mutex_);
+      if (begun_at_) return;
+      text = foreign_ > 0       ? "waiting: somebody runs another program, specification or fleet file"
+             : strange_ > 0     ? "waiting: the others are in another session (`--session`)"
+             : unheard_.empty() ? "waiting for the others to begin"
+                                : "waiting for " + Unheard();
+    }
+    Tell(text, 30);
   }
 
   std::optional<RobotEnding> Ending() {
@@ -266,6 +306,7 @@ class RobotProcess {
       s.blind = report_.blind;
       s.refused = refused_;
       s.foreign = foreign_;
+      s.strange = strange_;
       if (core_ != nullptr) {
         for (const uint32_t r : unheard_) s.unheard.push_back(fleet_.robots[r].name);
       }
@@ -304,10 +345,11 @@ class RobotProcess {
     refused_ = 0;
     for (size_t i = 1; i < core_->refused().size(); ++i) refused_ += core_->refused()[i];
     foreign_ = core_->refused()[static_cast<size_t>(runtime::codec::Refused::kForeign)];
+    strange_ = core_->refused()[static_cast<size_t>(runtime::codec::Refused::kSession)];
     unheard_.clear();
     for (uint32_t r = 0; r < settings_.robots; ++r) {
       const auto heard = core_->heard(r);
-      if (r != self_ && (!heard || now_ - *heard > settings_.patience)) unheard_.push_back(r);
+      if (r != self_ && (!heard || now_ - *heard > settings_.lease / 2)) unheard_.push_back(r);
     }
   }
 
@@ -319,6 +361,7 @@ class RobotProcess {
       line.waits = Node().waits();
       line.skips = Node().skips();
       line.calls = replica_->calls().answers();
+      if (const auto& failed = Node().failed()) line.said = Told(*failed);
     });
     replica_->calls().Clear();
     (void)replica_->calls().functions().TakeLog();  // what is said counts when the round is final
@@ -331,7 +374,10 @@ class RobotProcess {
       News("the first round begins");
     }
     if (Node().blind()) ++report_.blind;
-    if (Node().failed()) News("an operation of an event has no value: it skips", 40);
+    if (const auto& failed = Node().failed()) {
+      ++report_.failed;
+      if (report_.failed == 1) News(Told(*failed) + ": it skips", 40);
+    }
     Look();
   }
 
@@ -395,6 +441,12 @@ class RobotProcess {
     News(fmt::format("this is a mistake of the round protocol: {}", broken.what), 50);
   }
 
+  std::string Told(const koord::node::Failure& failed) const {
+    const std::string event =
+        failed.event == koord::node::kInit ? "init" : replica_->team().events()[failed.event].def->name;
+    return fmt::format("an operation of `{}` has no value: {}", event, Describe(failed.fault));
+  }
+
   std::string Unheard() const {
     std::vector<std::string> names;
     for (const uint32_t r : unheard_) names.push_back(fleet_.robots[r].name);
@@ -413,7 +465,7 @@ class RobotProcess {
     for (const Cell cell : cells) {
       const Word* at = state.data() + Node().cells().Address(cell, self_);
       const auto& heap = replica_->team().heap();
-      if (auto path = orders_->PathOf(cell.variable, heap, at)) senses_->GoesAlong(std::move(*path));
+      if (orders_->PathOf(cell.variable, heap, at, path_)) senses_->GoesAlong(path_);
       orders_->Give(cell.variable, heap, at, always);
     }
   }
@@ -454,8 +506,9 @@ class RobotProcess {
   // Of the thread that runs the rounds.
   Time now_ = 0;
   rounds::Place contributed_;
-  Time contributed_at_ = 0;
+  Time contributed_at_ = 0, looked_at_ = 0;
   uint64_t acted_ = 0;
+  std::vector<sim::Point> path_;  // kept for its memory
 
   // Of both.
   std::mutex mutex_;
@@ -464,7 +517,7 @@ class RobotProcess {
   rounds::Phase phase_ = rounds::Phase::kOutside;
   rounds::Place place_;
   bool active_ = false;
-  uint64_t refused_ = 0, foreign_ = 0;
+  uint64_t refused_ = 0, foreign_ = 0, strange_ = 0;
   std::vector<uint32_t> unheard_;
   std::optional<Time> begun_at_, stopped_at_;
   std::vector<std::pair<std::string, uint8_t>> news_;

@@ -48,6 +48,8 @@ struct RobotReport {
   uint64_t fallbacks = 0;                ///< how often it fell back
   uint64_t blind = 0;                    ///< rounds that it skipped because of its sensors
   uint64_t late = 0;                     ///< orders that came too late to be sent
+  uint64_t failed = 0;                   ///< rounds in which an operation of an event had no value
+  std::string log;                       ///< the file of its log; another one than asked for if there was one
   double median = 0, p99 = 0, most = 0;  ///< seconds from what it said to the end of the round
   std::string broken;
 };

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 
 #include "base/hex.h"
 #include "koord/semantics/story.h"
 #include "platform/topics.h"
+#include "runtime/codec/messages.h"
 #include "trace/reader.h"
 #include "transport/mailbox.h"
 
@@ -21,6 +23,27 @@ namespace {
 
 constexpr std::array kKinds = {Kind::kStarted,   Kind::kCrashed, Kind::kContributed, Kind::kStored,
                                Kind::kCommitted, Kind::kActed,   Kind::kFellBack,    Kind::kAdopted};
+
+// Tells apart machines, and their lives: clocks of one are one clock.
+std::string MachineLife() {
+  std::ifstream file("/proc/sys/kernel/random/boot_id");
+  std::string text;
+  file >> text;
+  return text;
+}
+
+// Numbers as they were written; others would be cut.
+int64_t Whole(const json& j) {
+  if (!j.is_number_integer()) throw json::other_error::create(501, "no whole number", nullptr);
+  return j.get<int64_t>();
+}
+template <class T>
+T Least(const json& j, T most) {
+  const int64_t number = Whole(j);
+  if (number < 0 || (most != 0 && static_cast<uint64_t>(number) > static_cast<uint64_t>(most)))
+    throw json::other_error::create(501, "out of range", nullptr);
+  return static_cast<T>(number);
+}
 
 // Texts of programs and robots may have bytes that are no UTF-8.
 std::string Dump(const json& j) { return j.dump(-1, ' ', false, json::error_handler_t::replace); }
@@ -51,7 +74,7 @@ LogWriter::LogWriter(trace::Writer writer, const LogHead& head, std::unique_ptr<
            {"seed", head_.seed},
            {"lease", head_.lease},
            {"stop_time", head_.stop_time},
-           {"clock", {{"boot", start_}, {"wall", wall_}}},
+           {"clock", {{"boot", start_}, {"wall", wall_}, {"machine", MachineLife()}}},
            {"robots", robots},
            {"program_name", head_.program_name},
            {"program", head_.program},
@@ -125,7 +148,8 @@ base::Result<bool> LogWriter::Finish() {
 base::Result<RobotLog> ReadRobotLog(const std::string& path) {
   const auto bytes = trace::ReadTrace(path);
   if (!bytes.ok()) return bytes.error();
-  RobotLog log{path, {}, {}, true, 0};
+  RobotLog log;
+  log.path = path;
   bool damaged = false;
   const auto visit = [&](const trace::Message& m) {
     if (m.encoding != "json") return true;
@@ -135,19 +159,35 @@ base::Result<RobotLog> ReadRobotLog(const std::string& path) {
     if (m.topic == "/rondo/run") {
       log.run = std::move(line);
     } else if (line.contains("lost")) {
-      log.lost = line.value("lost", uint64_t{1});
+      ++log.lost;
     } else {
       log.lines.push_back(std::move(line));
     }
     return true;
   };
   if (!trace::ForEachMessage(bytes.value(), visit).ok()) {
-    log = {path, {}, {}, false, 0};
+    log = RobotLog();
+    log.path = path;
+    log.complete = false;
+    damaged = false;
     const auto left = trace::ForEachMessageLeft(bytes.value(), visit);
     if (!left.ok()) return left.error();
   }
-  if (damaged || !log.run.is_object() || log.run.value("engine", "") != "run")
-    return base::Error{"this is no log of a robot"};
+  try {
+    if (damaged || log.run.at("engine").get<std::string>() != "run")
+      return base::Error{"this is no log of a robot"};
+    log.robot = Least<uint32_t>(log.run.at("robot"), runtime::codec::kMostRobots);
+    log.life = Least<uint64_t>(log.run.at("life"), 0);
+    log.seed = Least<uint64_t>(log.run.at("seed"), 0);
+    log.session = log.run.at("session").get<std::string>();
+    log.boot = Whole(log.run.at("clock").at("boot"));
+    log.wall = Whole(log.run.at("clock").at("wall"));
+    log.machine = log.run.at("clock").at("machine").get<std::string>();
+    for (const char* text : {"program", "spec", "fleet", "program_name"})
+      (void)log.run.at(text).get<std::string>();
+  } catch (const json::exception&) {
+    return base::Error{"this is no log of a robot, or it is damaged"};
+  }
   return log;
 }
 
@@ -158,31 +198,35 @@ class Merger {
   Merger(const std::vector<RobotLog>& logs, Replica& replica) : logs_(logs), replica_(replica) {}
 
   base::Result<FleetRecord> Run() {
-    try {
-      const json& run = logs_.front().run;
-      out_.record.robots = run.at("robots").size();
-      out_.record.lease = run.at("lease").get<int64_t>();
-      out_.record.stop_time = run.at("stop_time").get<int64_t>();
-      for (const RobotLog& log : logs_) {
-        // On one machine all clocks are the same one; on others, what the wall says has to do.
-        const json& clock = log.run.at("clock");
-        const json& first = run.at("clock");
-        const int64_t apart = (clock.at("wall").get<int64_t>() - clock.at("boot").get<int64_t>()) -
-                              (first.at("wall").get<int64_t>() - first.at("boot").get<int64_t>());
-        const int64_t shift = std::abs(apart) < kSameClock ? 0 : apart;
-        for (const json& line : log.lines) Add(line, shift);
+    out_.record.robots = replica_.team().robots();
+    for (const RobotLog& log : logs_) {
+      // On one machine all clocks are the same one; on others, what the wall says has to do.
+      const bool same = log.machine == logs_[0].machine;
+      out_.one_clock = out_.one_clock && same;
+      const int64_t shift = same ? 0 : (log.wall - log.boot) - (logs_[0].wall - logs_[0].boot);
+      try {
+        for (const json& line : log.lines) Add(line, log, shift);
+      } catch (const json::exception&) {
+        good_ = false;
       }
-    } catch (const json::exception&) {
-      return base::Error{"a line of a log makes no sense"};
+      if (!good_) return base::Error{fmt::format("a line of `{}` makes no sense", log.path)};
     }
-    if (!good_) return base::Error{"a log is none of this program and fleet"};
-    std::ranges::stable_sort(out_.record.entries, {}, &Entry::time);
+    if (out_.one_clock) {
+      std::ranges::stable_sort(out_.record.entries, {}, &Entry::time);
+    } else {
+      // By what has to come first: what is said in a round, what it leads to.
+      const auto step = [](const Entry& e) {
+        const bool said = e.kind == Kind::kContributed || e.kind == Kind::kFellBack;
+        return std::tuple(e.epoch, 2 * e.round + (said ? 1 : 0), e.time);
+      };
+      std::ranges::stable_sort(out_.record.entries, {}, step);
+    }
     std::ranges::stable_sort(out_.said, {}, &std::pair<int64_t, std::string>::first);
     return std::move(out_);
   }
 
  private:
-  static constexpr int64_t kSameClock = 50'000'000;
+  static constexpr uint64_t kMostRounds = uint64_t{1} << 48;
 
   runtime::codec::Bytes Bytes(const json& text) {
     auto bytes = base::FromHex(text.get<std::string>());
@@ -199,25 +243,27 @@ class Merger {
     return it->second;
   }
 
-  void Add(const json& line, int64_t shift) {
+  void Add(const json& line, const RobotLog& log, int64_t shift) {
     Entry e;
     const auto did = line.at("did").get<std::string>();
     const auto kind = std::ranges::find_if(kKinds, [&](Kind k) { return history::Name(k) == did; });
-    if (kind == kKinds.end()) {
-      good_ = false;
-      return;
-    }
+    good_ = good_ && kind != kKinds.end();
+    if (!good_) return;
     e.kind = *kind;
-    e.time = line.at("time").get<int64_t>() + shift;
-    e.robot = line.at("robot").get<uint32_t>();
-    e.incarnation = line.at("life").get<uint64_t>();
-    e.epoch = line.at("epoch").get<uint64_t>();
-    e.round = line.at("round").get<uint64_t>();
+    constexpr int64_t kLatest = int64_t{1} << 61;
+    e.time = Least<int64_t>(line.at("time"), kLatest) + shift;
+    e.robot = Least<uint32_t>(line.at("robot"), static_cast<uint32_t>(out_.record.robots - 1));
+    e.incarnation = Least<uint64_t>(line.at("life"), 0);
+    e.epoch = Least<uint64_t>(line.at("epoch"), kMostRounds);
+    e.round = Least<uint64_t>(line.at("round"), kMostRounds);
+    good_ = good_ && e.robot == log.robot && e.incarnation == log.life;
     e.what = history::kNothing;
     if (line.contains("store")) e.what = Image(line["store"]);
-    if (line.contains("until")) e.until = line["until"].get<int64_t>() + shift;
-    if (line.contains("said")) out_.said.emplace_back(e.time, line["said"].get<std::string>());
+    good_ = good_ && (e.kind != Kind::kStored || line.contains("store"));
+    if (e.kind == Kind::kActed) e.until = Least<int64_t>(line.at("until"), kLatest) + shift;
+    const std::string said = line.contains("said") ? line["said"].get<std::string>() : std::string();
     if (e.kind == Kind::kContributed) {
+      if (!said.empty()) out_.faults.push_back({e.time, e.robot, said});
       e.what = out_.record.texts.size();
       out_.record.texts.push_back(Bytes(line.at("frame")));
       e.waits = line.value("waits", std::vector<uint32_t>());
@@ -227,12 +273,15 @@ class Merger {
         for (const uint8_t byte : Bytes(call.at("question"))) question = question << 8 | byte;
         out_.answers[{e.robot, question}].push_back({e.round, Bytes(call.at("answer"))});
       }
+    } else if (!said.empty()) {
+      out_.said.emplace_back(e.time, said);
     }
     if (e.kind == Kind::kAdopted) {
       e.what = out_.record.members.size();
       auto& members = out_.record.members.emplace_back();
       for (const json& member : line.value("members", json::array()))
-        members.push_back({member.at("robot").get<uint32_t>(), member.at("life").get<uint64_t>()});
+        members.push_back({Least<uint32_t>(member.at("robot"), static_cast<uint32_t>(out_.record.robots - 1)),
+                           Least<uint64_t>(member.at("life"), 0)});
     }
     out_.record.entries.push_back(std::move(e));
   }

@@ -25,7 +25,7 @@ struct LogLine {
   bool skips = false;
   std::vector<CallAnswer> calls;
   std::vector<history::Life> members;
-  std::string said;  ///< kActed: what the robot says to streams
+  std::string said;  ///< kActed: what the robot says to streams; kContributed: an operation that has no value
 };
 
 /// Says of which robot a log is, and of what run.
@@ -80,7 +80,12 @@ struct RobotLog {
   nlohmann::json run;
   std::vector<nlohmann::json> lines;
   bool complete = true;  ///< else its robot was killed
-  uint64_t lost = 0;     ///< lines that it could not keep
+  uint64_t lost = 0;     ///< how often it could not keep up
+  uint32_t robot = 0;
+  uint64_t life = 0, seed = 0;
+  std::string session;
+  int64_t boot = 0, wall = 0;  ///< what clocks said when it began, nanoseconds
+  std::string machine;         ///< the same for logs of one machine, as long as it is not started again
 };
 
 /// Reads the log of one robot, complete or not. @error if it is none.
@@ -94,10 +99,18 @@ struct FleetRecord {
     runtime::codec::Bytes value;
   };
   std::map<std::pair<uint32_t, uint64_t>, std::vector<Answer>> answers;  ///< by robot and question
-  std::vector<std::pair<int64_t, std::string>> said;                     ///< to streams: when, and what
+  struct Fault {
+    int64_t time;
+    uint32_t robot;
+    std::string what;  ///< an operation of an event has no value
+  };
+  std::vector<Fault> faults;
+  bool one_clock = true;  ///< all logs are of one machine; else times are as good as the clocks on the walls
+  std::vector<std::pair<int64_t, std::string>> said;  ///< to streams: when, and what
 };
 
-/// Puts logs together, in order of time. @error if a line makes no sense.
+/// Puts logs together: those of one machine in order of time, others in order of rounds. `lease` and `stop_time` of the record
+/// are to be set. @error if a line makes no sense.
 base::Result<FleetRecord> Merged(const std::vector<RobotLog>& logs, Replica& replica);
 
 }  // namespace rondo::deploy

@@ -51,6 +51,7 @@ ros::diagnostic_msgs::DiagnosticArray MessageOf(const RobotStatus& s) {
   value("late", fmt::to_string(s.late));
   value("refused", fmt::to_string(s.refused));
   value("foreign", fmt::to_string(s.foreign));
+  value("strange", fmt::to_string(s.strange));
   value("sensors", s.sensors);
   value("unheard", fmt::format("{}", fmt::join(s.unheard, " ")));
   return array;
@@ -77,6 +78,7 @@ std::vector<RobotStatus> StatusesOf(const ros::diagnostic_msgs::DiagnosticArray&
     s.late = Whole(values["late"]);
     s.refused = Whole(values["refused"]);
     s.foreign = Whole(values["foreign"]);
+    s.strange = Whole(values["strange"]);
     s.sensors = values["sensors"];
     std::istringstream names(values["unheard"]);
     for (std::string name; names >> name;) s.unheard.push_back(name);

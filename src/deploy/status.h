@@ -17,7 +17,8 @@ struct RobotStatus {
   uint64_t epoch = 0, round = 0;
   bool active = false;         ///< it acts
   double median = 0, p99 = 0;  ///< milliseconds until a round is final, lately
-  uint64_t fallbacks = 0, blind = 0, late = 0, refused = 0, foreign = 0;
+  uint64_t fallbacks = 0, blind = 0, late = 0, refused = 0, foreign = 0,
+           strange = 0;              ///< datagrams: of them of other files, of other sessions
   std::string sensors;               ///< why its sensors are not usable; empty: they are
   std::vector<std::string> unheard;  ///< robots that it misses
 };

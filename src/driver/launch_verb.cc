@@ -128,8 +128,11 @@ ExitStatus Fail(const Options& options, const workspace::Session& session, const
 // A description for `ros2 launch`, which is Python.
 ExitStatus WriteDescription(const Options& options, const runs::RobotProgram& program) {
   const auto quoted = [](const std::string& text) {
-    return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+    return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   };
+  std::string more;
+  if (!options.spec.empty()) more += ", \"--spec\", " + quoted(fs::absolute(options.spec).string());
+  if (options.seed) more += fmt::format(", \"--seed\", \"{}\"", *options.seed);
   std::string names;
   for (const sim::FleetRobot& robot : program.fleet.robots) names += quoted(robot.name) + ", ";
   const std::string text = fmt::format(
@@ -148,17 +151,17 @@ def generate_launch_description():
         DeclareLaunchArgument("robot", default_value="", description="which robot; default: all"),
         DeclareLaunchArgument("program", default_value={2}, description="the Koord program"),
         DeclareLaunchArgument("fleet", default_value={3}, description="the fleet"),
-        DeclareLaunchArgument("session", default_value="0", description="another number for each run with `--state`"),
+        DeclareLaunchArgument("session", default_value="0", description="a number that all robots have in common"),
     ]
     for name in ROBOTS:
         actions.append(ExecuteProcess(
             cmd=["rondo", "run", LaunchConfiguration("program"), "--fleet", LaunchConfiguration("fleet"), "--robot", name,
-                 "--session", LaunchConfiguration("session"), "--log", name + ".mcap"],
+                 "--session", LaunchConfiguration("session"), "--log", name + ".mcap"{4}],
             output="screen", condition=IfCondition(PythonExpression(["'", robot, "' in ('', '", name, "')"]))))
     return LaunchDescription(actions)
 )py",
       fs::path(options.ros2).filename().string(), names, quoted(fs::absolute(program.files.program).string()),
-      quoted(fs::absolute(program.files.fleet).string()));
+      quoted(fs::absolute(program.files.fleet).string()), more);
   const auto written = base::WriteFileAtomically(options.ros2, text);
   if (!written.ok()) {
     PrintFailure(fmt::format("cannot write `{}`: {}", options.ros2, written.error().message));
@@ -200,7 +203,11 @@ ExitStatus Run(const Options& options) {
     launch.progress = [&](const auto& robots, double time) { line.Show(Line(robots, time)); };
     ran = runs::Launch(*program, launch, session);
   }
-  if (!ran.ok()) return Fail(options, session, ran.error().message);
+  if (!ran.ok()) {
+    std::error_code left;
+    if (options.logs.empty()) fs::remove_all(launch.logs, left);
+    return Fail(options, session, ran.error().message);
+  }
   const runs::LaunchReport& report = ran.value();
   ExitStatus status = StatusOf(report, options);
   if (writer) {
@@ -231,7 +238,7 @@ ExitStatus Run(const Options& options) {
   for (const runs::RobotEnd& end : report.robots) text += TextOf(end);
   if (report.interrupted) text += "  interrupted\n";
   Print(text);
-  if (keep) Print(fmt::format("logs: {0}: `rondo replay {0}/*.mcap`\n", launch.logs));
+  if (keep) Print(fmt::format("logs: {0}: `rondo replay {0}/*.mcap*`\n", launch.logs));
   if (writer) Print(fmt::format("trace: {}\n", options.trace));
   PrintDiagnostics(session.sources, session.diagnostics);
   return status;

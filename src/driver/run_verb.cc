@@ -38,7 +38,10 @@ std::string Tell(const deploy::RobotReport& report) {
         1e3 * report.median, 1e3 * report.p99, 1e3 * report.most);
   }
   text += "\n";
-  if (report.fallbacks > 0) text += fmt::format("  fell back {} times\n", report.fallbacks);
+  if (report.fallbacks > 0) text += fmt::format("  fell back: {}\n", base::Counted(report.fallbacks, "time"));
+  if (report.failed > 0)
+    text +=
+        fmt::format("  an operation of an event had no value in {}\n", base::Counted(report.failed, "round"));
   if (report.blind > 0)
     text += fmt::format("  skipped {} because of its sensors\n", base::Counted(report.blind, "round"));
   if (report.late > 0) text += fmt::format("  {} too late to be sent\n", base::Counted(report.late, "order"));
@@ -110,8 +113,8 @@ ExitStatus Run(const Options& options) {
   }
   if (!ran.ok()) return Fail(options, session, ran.error().message);
   const deploy::RobotReport& report = ran.value();
-  const ExitStatus status = report.ending == RobotEnding::kHalted   ? ExitStatus::kRejected
-                            : report.ending == RobotEnding::kBroken ? ExitStatus::kBug
+  const ExitStatus status = report.ending == RobotEnding::kHalted || report.failed > 0 ? ExitStatus::kRejected
+                            : report.ending == RobotEnding::kBroken                    ? ExitStatus::kBug
                                                                     : ExitStatus::kEstablished;
   if (options.json) {
     PrintJson({{"command", "run"},
@@ -122,13 +125,15 @@ ExitStatus Run(const Options& options) {
                {"fallbacks", report.fallbacks},
                {"blind", report.blind},
                {"late", report.late},
+               {"failed", report.failed},
+               {"log", report.log},
                {"wait", {{"median", report.median}, {"p99", report.p99}, {"max", report.most}}},
                {"status", status},
                {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}});
     return status;
   }
   Print(fmt::format("{}: {}\n{}", program->files.program, options.robot, Tell(report)));
-  if (!options.log.empty()) Print(fmt::format("log: {}\n", options.log));
+  if (!report.log.empty()) Print(fmt::format("log: {}\n", report.log));
   PrintDiagnostics(session.sources, session.diagnostics);
   return status;
 }

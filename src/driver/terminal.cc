@@ -19,9 +19,10 @@ namespace {
 // A signal handler can reach nothing but globals.
 std::atomic<const base::StopToken*> current{nullptr};
 
-extern "C" void OnInterrupt(int) {
+// A second Ctrl-C ends the process at once; who sends SIGTERM may send it more than once.
+extern "C" void OnInterrupt(int number) {
   const base::StopToken* stop = current.load();
-  if (stop == nullptr || stop->cancelled()) ::_exit(130);
+  if (stop == nullptr || (stop->cancelled() && number == SIGINT)) ::_exit(130);
   stop->RequestStop();
 }
 

@@ -70,22 +70,27 @@ void Orders::Extend(Time until) {
   until_ = until;
 }
 
-std::optional<std::vector<Point>> Orders::PathOf(size_t variable, const Heap& heap, const Word* at) const {
+bool Orders::PathOf(size_t variable, const Heap& heap, const Word* at, std::vector<Point>& path) const {
   const auto line = std::ranges::find_if(lines_, [&](const Line& l) { return l.port->variable == variable; });
-  if (line == lines_.end()) return std::nullopt;
-  if (line->port->role == sim::PortRole::kPath) return sim::DecodePath(heap, *at);
-  if (line->port->role == sim::PortRole::kTarget) return std::vector<Point>{sim::ReadPoint(at)};
-  return std::nullopt;
+  if (line == lines_.end()) return false;
+  if (line->port->role == sim::PortRole::kPath) {
+    sim::DecodePath(heap, *at, path);
+  } else if (line->port->role == sim::PortRole::kTarget) {
+    path.assign(1, sim::ReadPoint(at));
+  } else {
+    return false;
+  }
+  return true;
 }
 
 void Orders::Give(size_t variable, const Heap& heap, const Word* at, bool always) {
   const auto line = std::ranges::find_if(lines_, [&](const Line& l) { return l.port->variable == variable; });
   if (line == lines_.end()) return;
-  auto path = PathOf(variable, heap, at);
   {
     const std::lock_guard lock(mutex_);
-    if (path) {
-      line->path = std::move(*path);
+    const sim::PortRole role = line->port->role;
+    if (role == sim::PortRole::kPath || role == sim::PortRole::kTarget) {
+      if (!PathOf(variable, heap, at, line->path)) return;
     } else if (line->topic.carries == Carries::kBool) {
       line->numbers[0] = *at != 0 ? 1 : 0;
     } else if (line->topic.carries == Carries::kPoint) {
@@ -115,41 +120,43 @@ uint64_t Orders::late() const {
   return late_;
 }
 
+// Nobody waits for a message to be sent: lines are taken out of the lock before.
 void Orders::Run() {
   std::unique_lock lock(mutex_);
   const auto wanted = [this] { return ended_ || std::ranges::any_of(lines_, &Line::due); };
   while (true) {
     changed_.wait_for(lock, drives_ ? kControl : milliseconds(100), wanted);
+    const bool last = ended_;
     for (Line& line : lines_) {
-      if (line.body != nullptr) {
-        Drive(line);
-        continue;
-      }
-      if (!line.due && !(line.unheard && line.publisher->matched() > 0)) continue;
       const bool due = std::exchange(line.due, false);
-      if (!line.always && transport::BootTime() > until_) {
-        late_ += due ? 1 : 0;
+      const bool again = line.body == nullptr && line.unheard && line.publisher->matched() > 0;
+      const bool in_time = line.always || transport::BootTime() <= until_;
+      if (due && !in_time) ++late_;
+      if ((due || again) && in_time) {
+        line.said = line.path;
+        line.said_numbers = line.numbers;
+        line.unheard = line.publisher->matched() == 0;
+      } else if (line.body == nullptr) {
         continue;
       }
-      line.unheard = line.publisher->matched() == 0;
-      Send(line);
+      lock.unlock();
+      if (line.body != nullptr)
+        Drive(line, due && in_time, last);
+      else
+        Send(line);
+      lock.lock();
     }
     sent_.notify_all();
-    if (ended_) return;
+    if (last) return;
   }
 }
 
 // What was told in time holds until something else is told, as for drivers that have the controller themselves.
-void Orders::Drive(Line& line) {
-  if (std::exchange(line.due, false)) {
-    if (line.always || transport::BootTime() <= until_)
-      line.body->Follow(line.path);
-    else
-      ++late_;
-  }
+void Orders::Drive(Line& line, bool fresh, bool last) {
+  if (fresh) line.body->Follow(line.said);
   const auto place = senses_.place();
   const bool blind = !place || !senses_.Unusable(transport::BootTime()).empty();
-  if (ended_ || blind) return Publish(line, {});
+  if (last || blind) return Publish(line, {});
   line.body->Put(place->position, place->yaw);
   line.body->Decide(std::chrono::duration<double>(kControl).count());
   Publish(line, line.body->Told().value_or(sim::Twist()));
@@ -182,14 +189,14 @@ void Orders::Send(const Line& line) const {
     case Carries::kPose: {
       ros::geometry_msgs::PoseStamped m;
       m.header = HeaderOf(fleet_.ros.frame);
-      m.pose = PoseAt(line.path.front());
+      m.pose = PoseAt(line.said.front());
       (void)line.publisher->Publish(m).ok();
       return;
     }
     case Carries::kPath: {
       ros::nav_msgs::Path m;
       m.header = HeaderOf(fleet_.ros.frame);
-      for (const Point& p : line.path) {
+      for (const Point& p : line.said) {
         auto& pose = m.poses.emplace_back();
         pose.header = m.header;
         pose.pose = PoseAt(p);
@@ -199,18 +206,18 @@ void Orders::Send(const Line& line) const {
     }
     case Carries::kBool: {
       ros::std_msgs::Bool m;
-      m.data = line.numbers[0] != 0;
+      m.data = line.said_numbers[0] != 0;
       (void)line.publisher->Publish(m).ok();
       return;
     }
     case Carries::kNumber: {
       ros::std_msgs::Float64 m;
-      m.data = line.numbers[0];
+      m.data = line.said_numbers[0];
       (void)line.publisher->Publish(m).ok();
       return;
     }
     case Carries::kPoint: {
-      (void)line.publisher->Publish(PoseAt(line.numbers).position).ok();
+      (void)line.publisher->Publish(PoseAt(line.said_numbers).position).ok();
       return;
     }
     case Carries::kOdometry:

@@ -18,8 +18,8 @@ namespace rondo::platform {
 /// Sends what the actuators of one robot are told to topics of ROS 2, on a thread of its own: who gives an order does not wait.
 /// Where a robot is driven by velocities, the controller of its model goes to where it is told, fifty times a second, by what
 /// the sensors say; without them, and at the end, it stands still.
-/// Looks at the clock before each message: none is sent after the time until which it may take effect. What nobody listened
-/// to is sent again when somebody does.
+/// Looks at the clock before each order: none is sent, or goes to the controller, after the time until which it may take effect. What
+/// was told in time holds until something else is told. What nobody listened to is sent again when somebody does.
 class Orders {
  public:
   /// @param ports  of the program; outlives this, as do the others.
@@ -40,8 +40,9 @@ class Orders {
   /// Tells the robot to stay where it is, whatever time it is, and waits until that is sent, for half a second at most.
   void Stay(const sim::Point& position);
 
-  /// Returns the path that a robot is told by that actuator; nothing if it is no actuator that makes it go somewhere.
-  std::optional<std::vector<sim::Point>> PathOf(size_t variable, const Heap& heap, const Word* at) const;
+  /// Puts the path that a robot is told by that actuator into `path`; without points, it is to stay. Returns false if the
+  /// actuator is none that makes it go somewhere.
+  bool PathOf(size_t variable, const Heap& heap, const Word* at, std::vector<sim::Point>& path) const;
   /// Returns how many orders came too late to be sent.
   uint64_t late() const;
 
@@ -55,11 +56,14 @@ class Orders {
     bool due = false;                 // to be sent
     bool unheard = false;             // sent, and nobody was there
     bool always = false;              // whatever time it is
+    // Only the thread that sends uses what follows.
+    std::vector<sim::Point> said;  // as `path`, `numbers`, of what is being sent
+    std::array<double, 3> said_numbers{};
     std::unique_ptr<sim::Body> body;  // its controller, of what is driven
   };
   void Run();
   void Send(const Line& line) const;
-  void Drive(Line& line);
+  void Drive(Line& line, bool fresh, bool last);
   void Publish(const Line& line, const sim::Twist& twist) const;
 
   const koord::Model& model_;

@@ -154,22 +154,36 @@ void Senses::HearOdometry(Heard& heard, const ros::nav_msgs::Odometry& m, Time n
   place_at_ = now;
 }
 
+// What a beam says (REP-117): something at a distance, something nearer than it can tell, nothing in range, nothing at all.
+double Senses::DistanceOf(float range, const ros::sensor_msgs::LaserScan& m) {
+  if (std::isnan(range)) return -1;
+  if (range > m.range_max) return INFINITY;
+  return std::isfinite(range) ? std::max(0.0, static_cast<double>(range)) : static_cast<double>(m.range_min);
+}
+
 void Senses::HearScan(Heard& heard, const ros::sensor_msgs::LaserScan& m, Time now) {
-  if (!place_) {
-    heard.wrong = "nobody has said yet where the robot is";
+  const auto odometry =
+      std::ranges::find_if(heard_, [](const Heard& h) { return h.topic.carries == Carries::kOdometry; });
+  if (!place_ || Seconds(now - place_at_) > odometry->topic.max_age) {
+    heard.wrong = "it cannot be placed: nobody has said lately where the robot is";
     return;
   }
-  if (m.ranges.size() > kMostRays || !std::isfinite(m.angle_min + m.angle_increment + m.range_max)) {
-    heard.wrong = "it says a number that is not finite, or too many";
+  if (m.ranges.empty()) return;
+  if (m.ranges.size() > kMostRays ||
+      !std::isfinite(m.angle_min + m.angle_increment + m.range_max + m.range_min) || m.angle_increment == 0) {
+    heard.wrong = "it says a number that is not finite, no angles, or too many";
     return;
   }
   Seen seen{now, place_->position, {}};
+  for (const float range : m.ranges) seen.rays.distances.push_back(DistanceOf(range, m));
   seen.rays.first = place_->yaw + m.angle_min;
   seen.rays.step = m.angle_increment;
   seen.rays.range = m.range_max;
-  for (const float range : m.ranges)
-    seen.rays.distances.push_back(range >= m.range_min && range <= m.range_max ? static_cast<double>(range)
-                                                                               : INFINITY);
+  if (m.angle_increment < 0) {  // clockwise
+    std::ranges::reverse(seen.rays.distances);
+    seen.rays.first += seen.rays.step * static_cast<double>(m.ranges.size() - 1);
+    seen.rays.step = -seen.rays.step;
+  }
   const auto round = static_cast<Time>(fleet_.delta * 1e9);
   std::erase_if(seen_, [&](const Seen& s) { return s.at <= now - round; });
   seen_.push_back(std::move(seen));
@@ -235,9 +249,10 @@ void Senses::Read(size_t robot, uint64_t, koord::node::Cell cell, std::span<Word
   }
 }
 
-void Senses::GoesAlong(std::vector<Point> path) {
+void Senses::GoesAlong(const std::vector<Point>& path) {
   const std::lock_guard lock(mutex_);
-  way_.Begin(std::move(path));
+  if (path.empty()) return way_.Begin({place_ ? place_->position : fleet_.robots[robot_].position});
+  way_.Copy(path);
 }
 
 std::optional<Senses::Place> Senses::place() {

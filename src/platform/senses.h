@@ -39,8 +39,8 @@ class Senses final : public koord::node::Sensors {
   void Read(size_t robot, uint64_t round, koord::node::Cell cell, std::span<Word> words) override;
   bool Usable(size_t robot, uint64_t round) override;
 
-  /// Says where the robot was told to go: `reached` of a program is about that, if no topic tells it.
-  void GoesAlong(std::vector<sim::Point> path);
+  /// Says where the robot was told to go, without points to stay: `reached` of a program is about that, if no topic tells it.
+  void GoesAlong(const std::vector<sim::Point>& path);
   /// Returns where it is, if anybody said so.
   struct Place {
     sim::Point position{}, velocity{};
@@ -63,6 +63,7 @@ class Senses final : public koord::node::Sensors {
   };
   void Hear(size_t heard, std::string_view bytes);
   void HearOdometry(Heard& heard, const ros::nav_msgs::Odometry& m, Time now);
+  static double DistanceOf(float range, const ros::sensor_msgs::LaserScan& m);
   void HearScan(Heard& heard, const ros::sensor_msgs::LaserScan& m, Time now);
 
   const koord::Model& model_;

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "lang/suggest.h"
@@ -113,6 +114,22 @@ void CheckPorts(const koord::Model& model, const sim::Fleet& fleet, const std::v
                               steers ? "an angle of steering" : "velocities in the plane"));
       report.Help("name a topic for it: `{ ros2 = \"goal_pose\" }`");
       break;
+    }
+  }
+  // A topic of two robots would be read, or obeyed, by both.
+  std::map<std::string, size_t> of;
+  for (const sim::Port& port : ports) {
+    for (size_t r = 0; r < fleet.robots.size(); ++r) {
+      const auto topic = TopicOf(model, fleet, r, port);
+      if (!topic) continue;
+      const auto [it, fresh] = of.emplace(topic->name, r);
+      if (it->second == r) continue;
+      diagnostics
+          .Report(diag::Kind::kFleetValue, fleet.robots[r].span,
+                  fmt::format("`{}` and `{}` have one topic for `{}`: {}", fleet.robots[it->second].name,
+                              fleet.robots[r].name, topic->port, topic->name))
+          .Help("give each robot a `namespace` of its own, and topics that do not begin with `/`");
+      return;
     }
   }
   for (const auto& [name, port] : fleet.ros.ports) {

@@ -122,9 +122,11 @@ class Launcher {
     ::setenv("ROS_DOMAIN_ID", fmt::to_string(with.value().domain).c_str(), 1);
     ::unsetenv("ROS_AUTOMATIC_DISCOVERY_RANGE");
     if (const auto started = Start(); !started.ok()) return started.error();
+    domain_ = with.value().domain;
     auto participant = dds::Participant::Open(with.value());
     if (!participant.ok()) return participant.error();
     deploy::Stage stage(program_.loaded->model, program_.fleet, program_.texts.seed, options_.trace);
+    if (const auto alone = Alone(*participant.value()); !alone.ok()) return alone.error();
     if (const auto begun = stage.Begin(*participant.value(), Record(), session_.diagnostics); !begun.ok())
       return begun.error();
     const auto listens = Listen(*participant.value());
@@ -146,8 +148,7 @@ class Launcher {
       RobotEnd end{robot.name, 0, 0, (folder / (robot.name + ".txt")).string(),
                    (folder / (robot.name + ".mcap")).string()};
       std::error_code ignored;
-      fs::remove(end.log, ignored);
-      fs::remove(end.log + ".partial", ignored);
+      for (const std::string& file : LogsOf(robot.name)) fs::remove(file, ignored);
       std::vector<std::string> arguments{options_.executable,
                                          "run",
                                          program_.files.program,
@@ -165,6 +166,20 @@ class Launcher {
       if (program_.fleet.rounds.disks)
         arguments.insert(arguments.end(), {"--state", (folder / "state").string()});
       if (auto started = children_.Start(arguments, std::move(end)); !started.ok()) return started;
+    }
+    return true;
+  }
+
+  // Bodies of another run would be read and obeyed as if they were ours.
+  base::Result<bool> Alone(dds::Participant& participant) const {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    for (const auto& node : participant.Nodes()) {
+      for (const sim::FleetRobot& robot : program_.fleet.robots) {
+        if (node.name.node_namespace == "/" + robot.node_namespace && node.name.name == "driver")
+          return base::Error{fmt::format(
+              "somebody else has a driver of `{}` in domain {}: end that, or use another ROS_DOMAIN_ID",
+              robot.name, domain_)};
+      }
     }
     return true;
   }
@@ -221,21 +236,26 @@ class Launcher {
       if (begun) report_.time = std::chrono::duration<double>(Clock::now() - *begun).count();
       if (options_.progress && i % 25 == 0) options_.progress(statuses, report_.time);
       report_.interrupted = options_.stop.StopRequested();
-      if (report_.interrupted || report_.time >= duration || children_.Running() == 0) return;
+      const size_t running = children_.Running();
+      // Without one of them the first round never comes.
+      const bool hopeless = !begun && running < program_.fleet.robots.size();
+      if (report_.interrupted || report_.time >= duration || running == 0 || hopeless) return;
     }
   }
 
   void Judge() {
     std::vector<deploy::RobotLog> logs;
     for (RobotEnd& end : report_.robots) {
-      std::error_code ignored;
-      if (!fs::exists(end.log, ignored)) end.log += ".partial";
-      auto log = deploy::ReadRobotLog(end.log);
-      if (!log.ok()) {
-        end.log.clear();
-        continue;
+      // Also of lives that somebody began by hand.
+      const std::vector<std::string> files = LogsOf(end.robot);
+      end.log = files.empty() ? "" : files.front();
+      for (const std::string& file : files) {
+        auto log = deploy::ReadRobotLog(file);
+        if (log.ok())
+          logs.push_back(std::move(log).value());
+        else
+          report_.problem = fmt::format("`{}`: {}", file, log.error().message);
       }
-      logs.push_back(std::move(log).value());
     }
     auto judged = deploy::JudgeLogs(logs, program_.loaded->model, program_.fleet, base::StopToken(),
                                     session_.diagnostics);
@@ -245,10 +265,25 @@ class Launcher {
       report_.problem = judged.error().message;
   }
 
+  // `bot0.mcap`, `bot0.2.mcap`, ..., complete or not.
+  std::vector<std::string> LogsOf(const std::string& robot) const {
+    std::vector<std::string> files;
+    std::error_code ignored;
+    for (int life = 1;; ++life) {
+      const fs::path path =
+          fs::path(options_.logs) / (life == 1 ? robot + ".mcap" : fmt::format("{}.{}.mcap", robot, life));
+      for (const std::string& name : {path.string(), path.string() + ".partial"}) {
+        if (fs::is_regular_file(name, ignored)) files.push_back(name);
+      }
+      if (files.size() < static_cast<size_t>(life)) return files;
+    }
+  }
+
   const RobotProgram& program_;
   const LaunchOptions& options_;
   workspace::Session& session_;
   LaunchReport report_;
+  uint32_t domain_ = 0;
   std::mutex mutex_;
   std::map<std::string, deploy::RobotStatus> statuses_;
   std::unique_ptr<dds::Subscription> subscription_;

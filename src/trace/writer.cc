@@ -57,6 +57,7 @@ Writer::Writer(Writer&& other) noexcept
     : path_(std::move(other.path_)),
       file_(std::exchange(other.file_, nullptr)),
       failed_(other.failed_),
+      kept_(other.kept_),
       offset_(other.offset_),
       schemas_(std::move(other.schemas_)),
       channels_(std::move(other.channels_)),
@@ -73,7 +74,7 @@ Writer::~Writer() {
   if (file_ == nullptr) return;
   std::fclose(file_);
   std::error_code ignored;
-  std::filesystem::remove(Partial(path_), ignored);
+  if (!kept_) std::filesystem::remove(Partial(path_), ignored);
 }
 
 void Writer::Write(std::string_view bytes) {
@@ -151,6 +152,7 @@ void Writer::Message(uint16_t channel, uint64_t time, std::string_view bytes) {
 void Writer::Keep() {
   Flush();
   failed_ = std::fflush(file_) != 0 || failed_;
+  kept_ = true;
 }
 
 void Writer::Flush() {
@@ -270,7 +272,7 @@ base::Result<bool> Writer::Finish() {
   if (!failed_) std::filesystem::rename(Partial(path_), path_, problem);
   if (failed_ || problem) {
     std::error_code ignored;
-    std::filesystem::remove(Partial(path_), ignored);
+    if (!kept_) std::filesystem::remove(Partial(path_), ignored);
     return base::Error{failed_ ? "the disk may be full" : problem.message()};
   }
   return true;

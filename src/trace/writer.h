@@ -43,7 +43,8 @@ class Writer {
   /// Adds a message. `time`: nanoseconds since the start of the run; must not decrease. What cannot be
   /// written is told by `Finish`.
   void Message(uint16_t channel, uint64_t time, std::string_view bytes);
-  /// Puts what was said so far where a crash of this process does not reach it: into the `.partial` file.
+  /// Puts what was said so far where a crash of this process does not reach it: into the `.partial` file, which stays then
+  /// if the file cannot be completed.
   void Keep();
   /// Completes the file and gives it its name. @error if anything could not be written.
   base::Result<bool> Finish();
@@ -70,7 +71,7 @@ class Writer {
 
   std::string path_;
   std::FILE* file_ = nullptr;
-  bool failed_ = false;
+  bool failed_ = false, kept_ = false;
   uint64_t offset_ = 0;
   std::vector<Schema> schemas_;  // texts are static
   std::vector<KnownChannel> channels_;

@@ -9,7 +9,8 @@ using runtime::rounds::Output;
 using runtime::rounds::Time;
 
 void Drive(runtime::rounds::Core& core, Transport& transport, const base::StopToken& stop,
-           const std::function<void(Time, const Output&)>& observe) {
+           const std::function<void(Time, const Output&)>& observe,
+           const std::function<void(Time)>& stepped) {
   constexpr Time kLook = 50'000'000;
   runtime::rounds::Outputs outputs;
   runtime::codec::Bytes datagram;
@@ -23,6 +24,7 @@ void Drive(runtime::rounds::Core& core, Transport& transport, const base::StopTo
       else
         observe(now, output);
     }
+    if (stepped) stepped(now);
     transport.Receive(std::min(core.wake(), now + kLook), datagram);
   }
 }

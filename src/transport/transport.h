@@ -24,8 +24,10 @@ class Transport {
 };
 
 /// Runs a core until somebody asks for a stop: gives it datagrams and time, sends what it says, and calls
-/// `observe` with everything else that it wants or tells, in order. Looks for a stop at least every 50 ms.
+/// `observe` with everything else that it wants or tells, in order, and `stepped` after each step. Looks for a stop at least
+/// every 50 ms.
 void Drive(runtime::rounds::Core& core, Transport& transport, const base::StopToken& stop,
-           const std::function<void(runtime::rounds::Time, const runtime::rounds::Output&)>& observe);
+           const std::function<void(runtime::rounds::Time, const runtime::rounds::Output&)>& observe,
+           const std::function<void(runtime::rounds::Time)>& stepped = {});
 
 }  // namespace rondo::transport

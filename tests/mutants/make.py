@@ -28,7 +28,7 @@ MUTANTS = {
         ("assume Motion.tracks when away(Motion.psn, Motion.path) <= beta\n    always away(Motion.psn, Motion.path) <= beta\n", "")],
         "the controller may leave its path"),
     "delivery_drift": ("delivery", [
-        ("    always Motion.psn == old(Motion.psn)\n", "    always dist(Motion.psn, old(Motion.psn)) <= beta\n")],
+        ("    always away(Motion.psn, Motion.path) <= hold\n", "    always away(Motion.psn, Motion.path) <= beta\n")],
         "parked robots drift"),
     "delivery_no_remove": ("delivery", [("                    all_tasks.remove(cur_task)\n", "")], "a task stays in the list"),
     "delivery_no_start": ("delivery", [

@@ -23,6 +23,12 @@ void Waypoints::Begin(std::vector<Point> path, const Tolerance& tolerance) {
   reached_ = false;
 }
 
+void Waypoints::Copy(const std::vector<Point>& path) {
+  std::vector<Point> kept = std::move(path_);
+  kept.assign(path.begin(), path.end());
+  Begin(std::move(kept));
+}
+
 const Point& Waypoints::Next(const Point& here) {
   while (!last() && Away(here, path_[next_]) < tolerance_.others) ++next_;
   return path_[next_];

@@ -24,6 +24,8 @@ class Waypoints {
   void Begin(std::vector<Point> path, const Tolerance& tolerance);
   /// Goes on with a new path and the tolerance of before.
   void Begin(std::vector<Point> path) { Begin(std::move(path), tolerance_); }
+  /// Does the same in the memory of the path before.
+  void Copy(const std::vector<Point>& path);
   /// Returns the point to go to from here.
   const Point& Next(const Point& here);
   /// Takes in where somebody is after `dt` more seconds, `Next` having said where to go.

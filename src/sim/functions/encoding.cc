@@ -63,10 +63,15 @@ Word EncodePath(Heap& heap, const std::vector<Point>& path) {
 }
 
 std::vector<Point> DecodePath(const Heap& heap, Word handle) {
-  const auto words = heap[handle];
   std::vector<Point> path;
-  for (size_t i = 0; i + 3 <= words.size(); i += 3) path.push_back(ReadPoint(words.data() + i));
+  DecodePath(heap, handle, path);
   return path;
+}
+
+void DecodePath(const Heap& heap, Word handle, std::vector<Point>& path) {
+  path.clear();
+  const auto words = heap[handle];
+  for (size_t i = 0; i + 2 < words.size(); i += 3) path.push_back(ReadPoint(words.data() + i));
 }
 
 }  // namespace rondo::sim

@@ -25,5 +25,6 @@ Word EncodeRays(Heap& heap, const Rays& rays);
 Rays DecodeRays(const Heap& heap, Word handle);
 Word EncodePath(Heap& heap, const std::vector<Point>& path);
 std::vector<Point> DecodePath(const Heap& heap, Word handle);
+void DecodePath(const Heap& heap, Word handle, std::vector<Point>& path);
 
 }  // namespace rondo::sim

@@ -89,7 +89,7 @@ void Draw(GridMap& map, const Point& from, const Rays& rays, double range) {
   }
   for (long i = 0; i < count; ++i) {
     const double distance = rays.distances[static_cast<size_t>(i)];
-    if (!(distance <= range)) continue;
+    if (!(distance <= range) || distance < 0) continue;
     // A little behind the surface, so that the end lies in a cell of the obstacle.
     const double angle = rays.first + static_cast<double>(i) * rays.step;
     const int c = map.Column(from[0] + (distance + 0.05) * std::cos(angle));

@@ -43,6 +43,7 @@ GridMap Merge(const GridMap& a, const GridMap& b);
 
 /// Holds distances, in metres, that a scanner sees in the directions `first + i * step` (radians, world
 /// frame); infinite: free up to `range`.
+/// `distances`: in metres; infinite: nothing in range; negative: nothing is known of that direction.
 struct Rays {
   double first = 0;
   double step = 0;

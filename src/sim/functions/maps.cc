@@ -72,7 +72,7 @@ void Functions::TrueScan(size_t, Arguments a, std::span<Word> result) {
   const double margin = 1e-6 + 5 * fleet_.lidar.noise + fleet_.lidar.resolution;
   bool good = true;
   for (size_t i = 0; i < rays.distances.size(); ++i) {
-    if (!std::isfinite(rays.distances[i])) continue;
+    if (!std::isfinite(rays.distances[i]) || rays.distances[i] < 0) continue;
     const double angle = rays.first + static_cast<double>(i) * rays.step;
     const Point end{from[0] + rays.distances[i] * std::cos(angle),
                     from[1] + rays.distances[i] * std::sin(angle), from[2]};
