@@ -86,7 +86,9 @@ std::string Configuration(const Network& network) {
   // Who hears nothing asks after milliseconds, not after a hundred.
   std::string internal =
       R"(<HeartbeatInterval min="2ms" minsched="4ms" max="200ms">10ms</HeartbeatInterval><NackDelay>0ms</NackDelay>)"
-      "<AckDelay>2ms</AckDelay><AutoReschedNackDelay>20ms</AutoReschedNackDelay><PreEmptiveAckDelay>2ms</PreEmptiveAckDelay>";
+      "<AckDelay>2ms</AckDelay><AutoReschedNackDelay>20ms</AutoReschedNackDelay><PreEmptiveAckDelay>2ms</PreEmptiveAckDelay>"
+      // Who is killed acknowledges nothing: nobody waits for that at the end.
+      "<WriterLingerDuration>100ms</WriterLingerDuration>";
   if (network.lost_in_thousand > 0)
     internal += fmt::format("<Test><XmitLossiness>{}</XmitLossiness></Test>", network.lost_in_thousand);
   return fmt::format(

@@ -116,6 +116,29 @@ def logs(folder):
     check("logs: one is cut off", done.returncode == 3 and "cut off" in done.stdout, done.stdout, done.stderr)
 
 
+def altered(folder):
+    """Logs whose lines are changed: what is wrong is found, or the file refused; nothing crashes."""
+    names = sorted((folder / "logs").glob("*.mcap"))
+    bytes_ = names[1].read_bytes()
+
+    def judged(old, new, count=1):
+        check(f"{old} is in the log", old in bytes_)
+        changed = folder / "altered.mcap"
+        changed.write_bytes(bytes_.replace(old, new, count))
+        return rondo("replay", names[0], changed, *names[2:])
+    for what, old, new in (("a text for a number", b'"life":1', b'"life":"'), ("a robot of another log", b'"robot":1,"round"', b'"robot":2,"round"'),
+                           ("a robot that does not exist", b'{"life":1', b'{"life":9'), ("no store", b'"store":"', b'"stora":"'),
+                           ("another lease", b'"engine":"run"', b'"engine":"rum"'), ("a kind that does not exist", b'"did":"acted"', b'"did":"acter"')):
+        done = judged(old, new)
+        check(f"altered: {what}", done.returncode in (1, 3) and "bug" not in done.stderr, done.returncode, done.stdout, done.stderr)
+    # A machine with a clock of its own.
+    machine = re.search(rb'"machine":"([^"]*)"', bytes_).group(1)
+    done = judged(machine, b"x" * len(machine))
+    check("altered: another machine", done.returncode == 3 and "whose clocks are not one" in done.stdout, done.stdout, done.stderr)
+    done = judged(b'"until":', b'"until":1', 10**6)  # much later
+    check("altered: all is well after that", done.returncode in (0, 1), done.stdout)
+
+
 def killed(folder, on_loss):
     path = fleet(folder, f"{on_loss}.toml", ('on_loss = "evict"', f'on_loss = "{on_loss}"'))
     process = subprocess.Popen([str(RONDO), "launch", LINEFORM, "--fleet", str(path), "--duration", "9", "--json", "--logs", folder / on_loss],
@@ -211,6 +234,35 @@ def vendors(folder):
     check("another Cyclone DDS hears where a robot is", re.match(r"\d\d+ map solo/base_link \S+ \S+", heard.stdout), heard.stdout, heard.stderr)
 
 
+FAULTS = SOLO.replace("        Motion.target = pos(3, 2.5, 0)", "        n = 1 / (n - n)").replace("Go:", "local:\n    int n = 0\nGo:")
+
+
+def mistakes(folder):
+    (folder / "faults.koord").write_text(FAULTS)
+    (folder / "faults.toml").write_text(SOLO_FLEET)
+    status, report = launch(folder / "faults", "--duration", 2)
+    found = (report.get("judged") or {}).get("violations", [])
+    check("an operation without a value is a violation", status == 1 and found and "the divisor is zero" in found[0]["what"], status, report)
+    (folder / "twice.toml").write_text(SOLO_FLEET + '[[robot]]\nname = "b"\nmodel = "unicycle"\nposition = [3, 0, 0]\nnamespace = "solo"\n')
+    done = rondo("launch", folder / "solo", "--fleet", folder / "twice.toml")
+    check("two robots on one topic", done.returncode == 1 and "have one topic for `psn`: /solo/odom" in done.stderr, done.stderr)
+    process = subprocess.Popen([str(RONDO), "launch", str(folder / "solo"), "--duration", "30", "--json"], stdout=subprocess.DEVNULL)
+    time.sleep(2.5)
+    done = rondo("launch", folder / "solo")
+    check("two fleets in one domain", done.returncode == 1 and "somebody else has a driver of `solo`" in done.stderr, done.stderr)
+    process.kill()
+    process.wait()
+    time.sleep(5)
+    check("the launcher is killed: nobody is left", subprocess.run(["pgrep", "-f", "[-]-robot solo "], stdout=subprocess.DEVNULL).returncode == 1)
+    begun = time.monotonic()
+    process = subprocess.Popen([str(RONDO), "launch", LINEFORM, "--fleet", str(TURTLES), "--json"], stdout=subprocess.PIPE, text=True)
+    killed_one = False
+    while not killed_one and time.monotonic() - begun < 5:
+        killed_one = subprocess.run(["pkill", "-9", "-f", "[-]-robot bot2 "]).returncode == 0
+    report = json.loads(process.communicate(timeout=60)[0])
+    check("one dies in the beginning", process.returncode == 1 and any(r["signal"] == 9 for r in report["robots"]), report)
+
+
 def refusals(folder):
     done = rondo("run", LINEFORM, "--fleet", TURTLES, "--robot", "bott0")
     check("run: a robot that does not exist", done.returncode == 1 and "did you mean `bot0`?" in done.stderr, done.stderr)
@@ -226,7 +278,7 @@ def refusals(folder):
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        for part in (refusals, fleets, logs, lambda f: killed(f, "evict"), lambda f: killed(f, "halt"), interrupted, doctor, vendors):
+        for part in (refusals, fleets, logs, altered, lambda f: killed(f, "evict"), lambda f: killed(f, "halt"), interrupted, doctor, vendors, mistakes):
             part(folder)
     print(f"{len(problems)} problems")
     return 1 if problems else 0

@@ -34,7 +34,9 @@ TEST(DdsAllocations, SendingAndReceivingTakesNoMemory) {
       while (there.Receive(there.Now() + 2'000'000, datagram)) ++received;
     }
   };
-  exchange(700);  // they find each other, writers are made, and each place of a mailbox was used
+  // They find each other, writers are made, and each place of a mailbox had a large datagram: memory moves on by a place with
+  // each that is taken.
+  exchange(1200);
   received = 0;
   counting = true;
   exchange(100);
