@@ -230,13 +230,14 @@ size_t Participant::AddNode(const NodeName& name) {
 }
 
 base::Result<int32_t> Participant::Topic(const std::string& wire, const std::string& type) {
+  const std::string key = fmt::format("{} {}", wire, type);
   const std::lock_guard lock(mutex_);
   for (const auto& [name, entity] : topics_) {
-    if (name == wire + " " + type) return entity;
+    if (name == key) return entity;
   }
   const dds_entity_t topic = CreateRawTopic(entity_, wire, type, nullptr);
   if (topic < 0) return Failed(fmt::format("cannot use the topic `{}`", wire), topic);
-  topics_.emplace_back(wire + " " + type, topic);
+  topics_.emplace_back(key, topic);
   return topic;
 }
 

@@ -70,7 +70,9 @@ class Teller {
         if (said != said_.end() && said->second->epoch == e.epoch && said->second->round + 1 == e.round)
           report_.waits.push_back(Seconds(e.time - said->second->time));
       }
-      if (e.kind == Kind::kFellBack) {
+      if (e.kind == Kind::kContributed) began_.insert({e.robot, e.incarnation});
+      // Each life begins with its fallback.
+      if (e.kind == Kind::kFellBack && began_.contains({e.robot, e.incarnation})) {
         ++report_.fallbacks;
         Say(e, fmt::format("{} falls back", NameOf(e.robot)));
       }
@@ -96,6 +98,7 @@ class Teller {
   LogsReport& report_;
   int64_t start_ = 0;
   std::map<uint32_t, const Entry*> said_;  // by robot: last
+  std::set<history::Life> began_;
 };
 
 // What a log that is missing, or ends early, would have told is not held against the others, as long as its robot is one of

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <mutex>
 #include <thread>
 
 #include "deploy/echo.h"
-#include "deploy/latencies.h"
+#include "deploy/round_thread.h"
 #include "deploy/status.h"
 #include "platform/orders.h"
 #include "platform/senses.h"
@@ -20,16 +19,12 @@
 namespace rondo::deploy {
 
 namespace rounds = runtime::rounds;
-using history::Kind;
-using koord::node::Cell;
 using rounds::Time;
 using transport::BootTime;
 
 namespace {
 
-constexpr Time kSecond = 1'000'000'000;
-
-Time Nanoseconds(double seconds) { return static_cast<Time>(std::llround(seconds * 1e9)); }
+double Seconds(Time time) { return static_cast<double>(time) * 1e-9; }
 
 // A part of a ROS name.
 std::string Plain(const std::string& text) {
@@ -95,7 +90,7 @@ class RobotProcess {
     senses_ = std::make_unique<platform::Senses>(model_, fleet_, ports_, self_, replica_->body(self_),
                                                  replica_->team().heap());
     if (auto begun = senses_->Begin(*participant_, node_); !begun.ok()) return begun;
-    Node().SetSensors(senses_.get());
+    replica_->node().SetSensors(senses_.get());
     orders_ = std::make_unique<platform::Orders>(model_, fleet_, ports_, self_, *senses_);
     if (auto begun = orders_->Begin(*participant_, node_); !begun.ok()) return begun;
     auto diagnostics = participant_->Publish(node_, "/diagnostics",
@@ -116,37 +111,17 @@ class RobotProcess {
 
   RobotReport Run() {
     if (WaitForSensors()) {
-      Log(Kind::kStarted, {}, [](LogLine&) {});
-      // What its actuators do after a crash, nobody knows.
-      if (record_) FallBack();
-      core_ = std::make_unique<rounds::Core>(
-          settings_, Node(), disk_.get(),
-          record_ ? std::optional(runtime::codec::View(*record_)) : std::nullopt);
-      std::thread thread([this] {
-        transport::Drive(
-            *core_, *way_, ended_,
-            [this](Time now, const rounds::Output& output) {
-              now_ = now;
-              std::visit([&](const auto& o) { Do(o); }, output);
-            },
-            [this](Time now) {
-              now_ = now;
-              if (now - looked_at_ < kSecond / 10) return;
-              looked_at_ = now;
-              const std::lock_guard lock(mutex_);
-              Look();
-            });
-      });
-      Watch();
-      ended_.RequestStop();
+      rounds_ = std::make_unique<RoundThread>(fleet_, self_, *replica_, *senses_, *orders_, log_.get());
+      const base::StopToken ended;
+      std::thread thread([&] { rounds_->Run(settings_, disk_.get(), record_, *way_, ended); });
+      report_.ending = Watch();
+      ended.RequestStop();
       thread.join();
+      Fill(rounds_->View());
     } else {
       report_.ending = RobotEnding::kInterrupted;
     }
     if (const auto place = senses_->place()) orders_->Stay(place->position);
-    report_.median = latencies_.Quantile(0.5);
-    report_.p99 = latencies_.Quantile(0.99);
-    report_.most = latencies_.Most();
     report_.late = orders_->late();
     return report_;
   }
@@ -155,7 +130,6 @@ class RobotProcess {
 
  private:
   static base::Error Reported() { return {}; }
-  koord::node::Node& Node() { return replica_->node(); }
   std::unique_ptr<Replica> Make(PlannerThread* planner) {
     return Replica::Make(model_, fleet_, ports_, self_, options_.seed, planner, diagnostics_);
   }
@@ -224,258 +198,86 @@ class RobotProcess {
       const std::string why = senses_->Unusable(BootTime());
       if (why.empty()) return true;
       if (i % 20 == 10 && why != last) Tell("waiting: " + (last = why), 30);
-      if (i % 10 == 0) Publish(why);
+      if (i % 10 == 0) Publish(why, nullptr);
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
   }
 
-  // -- the thread that watches
-
-  void Watch() {
+  RobotEnding Watch() {
     using Clock = std::chrono::steady_clock;
     auto next = Clock::now();
     bool blind = false;
-    int waited = 0;  // seconds
-    while (true) {
+    for (int seconds = 0;;) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      const std::optional<RobotEnding> ending = Ending();
+      const RoundView view = rounds_->View();
+      const std::optional<RobotEnding> ending = Ending(view);
       if (Clock::now() >= next || ending) {
         next = Clock::now() + std::chrono::seconds(1);
         const std::string why = senses_->Unusable(BootTime());
-        Publish(why);
+        Publish(why, &view);
         if (blind != !why.empty()) Tell(why.empty() ? "the sensors are usable again" : "skips: " + why, 30);
         blind = !why.empty();
-        Wait(waited++);
+        if (!view.begun_at && seconds++ % 10 == 2) Tell(Awaited(view), 30);
       }
-      std::vector<std::pair<std::string, uint8_t>> news;
-      {
-        const std::lock_guard lock(mutex_);
-        news.swap(news_);
-      }
-      for (const auto& [text, level] : news) Tell(text, level);
-      if (!ending) continue;
-      report_.ending = *ending;
-      return;
+      for (const auto& [text, level] : rounds_->TakeNews()) Tell(text, level);
+      if (ending) return *ending;
     }
   }
 
   // Says whom it waits for, in the beginning.
-  void Wait(int seconds) {
-    if (seconds % 10 != 2) return;
-    std::string text;
-    {
-      const std::lock_guard lock(mutex_);
-      if (begun_at_) return;
-      text = foreign_ > 0       ? "waiting: somebody runs another program, specification or fleet file"
-             : strange_ > 0     ? "waiting: the others are in another session (`--session`)"
-             : unheard_.empty() ? "waiting for the others to begin"
-                                : "waiting for " + Unheard();
-    }
-    Tell(text, 30);
+  std::string Awaited(const RoundView& view) const {
+    return view.foreign > 0       ? "waiting: somebody runs another program, specification or fleet file"
+           : view.strange > 0     ? "waiting: the others are in another session (`--session`)"
+           : view.unheard.empty() ? "waiting for the others to begin"
+                                  : fmt::format("waiting for {}", fmt::join(view.unheard, ", "));
   }
 
-  std::optional<RobotEnding> Ending() {
-    const std::lock_guard lock(mutex_);
+  std::optional<RobotEnding> Ending(const RoundView& view) const {
     const Time now = BootTime();
-    if (!report_.broken.empty()) return RobotEnding::kBroken;
+    if (!view.broken.empty()) return RobotEnding::kBroken;
     if (options_.stop.StopRequested()) return RobotEnding::kInterrupted;
-    if (phase_ == rounds::Phase::kHalted) return RobotEnding::kHalted;
+    if (view.phase == rounds::Phase::kHalted) return RobotEnding::kHalted;
     // The others have to hear of the last round, too.
-    if (stopped_at_ && now - *stopped_at_ > settings_.lease) return RobotEnding::kStopped;
-    if (options_.duration > 0 && begun_at_ && now - *begun_at_ > Nanoseconds(options_.duration))
+    if (view.stopped_at && now - *view.stopped_at > settings_.lease) return RobotEnding::kStopped;
+    if (options_.duration > 0 && view.begun_at && Seconds(now - *view.begun_at) > options_.duration)
       return RobotEnding::kTime;
     return std::nullopt;
   }
 
-  void Publish(const std::string& sensors) {
+  void Fill(const RoundView& view) {
+    report_.rounds = view.rounds;
+    report_.fallbacks = view.fallbacks;
+    report_.blind = view.blind;
+    report_.failed = view.failed;
+    report_.broken = view.broken;
+    report_.median = view.median;
+    report_.p99 = view.p99;
+    report_.most = view.most;
+  }
+
+  // @param view  nullptr: it has not begun.
+  void Publish(const std::string& sensors, const RoundView* view) {
     RobotStatus s;
     s.robot = name_;
     s.program = options_.program_name;
     s.agreement = fmt::format("{:016x}", agreement_);
     s.sensors = sensors;
     s.late = orders_->late();
-    {
-      const std::lock_guard lock(mutex_);
-      s.phase = core_ == nullptr ? "waiting" : std::string(Name(phase_));
-      s.epoch = place_.epoch;
-      s.round = place_.round;
-      s.active = active_;
-      s.median = 1e3 * latencies_.Quantile(0.5);
-      s.p99 = 1e3 * latencies_.Quantile(0.99);
-      s.fallbacks = report_.fallbacks;
-      s.blind = report_.blind;
-      s.refused = refused_;
-      s.foreign = foreign_;
-      s.strange = strange_;
-      if (core_ != nullptr) {
-        for (const uint32_t r : unheard_) s.unheard.push_back(fleet_.robots[r].name);
-      }
+    s.phase = view == nullptr ? "waiting" : std::string(Name(view->phase));
+    if (view != nullptr) {
+      s.epoch = view->place.epoch;
+      s.round = view->place.round;
+      s.active = view->active;
+      s.median = 1e3 * view->median;
+      s.p99 = 1e3 * view->p99;
+      s.fallbacks = view->fallbacks;
+      s.blind = view->blind;
+      s.refused = view->refused;
+      s.foreign = view->foreign;
+      s.strange = view->strange;
+      s.unheard = view->unheard;
     }
     (void)status_->Publish(MessageOf(s)).ok();
-  }
-
-  // -- the thread that runs the rounds
-
-  template <class Fill>
-  void Log(Kind kind, rounds::Place at, const Fill& fill) {
-    if (log_ == nullptr) return;
-    log_->Put([&](LogLine& line) {
-      line.kind = kind;
-      line.time = now_ == 0 ? BootTime() : now_;
-      line.until = 0;
-      line.stamp = platform::WallTime();
-      line.epoch = at.epoch;
-      line.round = at.round;
-      line.bytes.clear();
-      line.waits.clear();
-      line.skips = false;
-      line.calls.clear();
-      line.members.clear();
-      line.said.clear();
-      fill(line);
-    });
-  }
-
-  void News(std::string text, uint8_t level = 20) { news_.emplace_back(std::move(text), level); }
-
-  void Look() {
-    phase_ = core_->phase();
-    place_ = core_->place();
-    active_ = core_->active();
-    refused_ = 0;
-    for (size_t i = 1; i < core_->refused().size(); ++i) refused_ += core_->refused()[i];
-    foreign_ = core_->refused()[static_cast<size_t>(runtime::codec::Refused::kForeign)];
-    strange_ = core_->refused()[static_cast<size_t>(runtime::codec::Refused::kSession)];
-    unheard_.clear();
-    for (uint32_t r = 0; r < settings_.robots; ++r) {
-      const auto heard = core_->heard(r);
-      if (r != self_ && (!heard || now_ - *heard > settings_.lease / 2)) unheard_.push_back(r);
-    }
-  }
-
-  void Do(const rounds::Send&) {}
-
-  void Do(const rounds::Contributed& c) {
-    Log(Kind::kContributed, c.at, [&](LogLine& line) {
-      line.bytes.assign(c.payload.begin(), c.payload.end());
-      line.waits = Node().waits();
-      line.skips = Node().skips();
-      line.calls = replica_->calls().answers();
-      if (const auto& failed = Node().failed()) line.said = Told(*failed);
-    });
-    replica_->calls().Clear();
-    (void)replica_->calls().functions().TakeLog();  // what is said counts when the round is final
-    contributed_ = c.at;
-    contributed_at_ = now_;
-    if (Node().blind()) FallBack();
-    const std::lock_guard lock(mutex_);
-    if (!begun_at_) {
-      begun_at_ = now_;
-      News("the first round begins");
-    }
-    if (Node().blind()) ++report_.blind;
-    if (const auto& failed = Node().failed()) {
-      ++report_.failed;
-      if (report_.failed == 1) News(Told(*failed) + ": it skips", 40);
-    }
-    Look();
-  }
-
-  void Do(const rounds::Stored& stored) {
-    Log(Kind::kStored, stored.at, [&](LogLine& line) { Node().Save(line.bytes); });
-  }
-
-  void Do(const rounds::Committed& c) {
-    Log(Kind::kCommitted, c.at, [](LogLine&) {});
-    const std::lock_guard lock(mutex_);
-    if (contributed_.epoch == c.at.epoch && contributed_.round + 1 == c.at.round)
-      latencies_.Add(now_ - contributed_at_);
-    report_.rounds = std::max(report_.rounds, c.at.round);
-    Look();
-  }
-
-  void Do(const rounds::Act& act) {
-    orders_->Extend(act.until);
-    const bool fresh = act.at.round > acted_;
-    std::string said;
-    if (fresh) {
-      acted_ = act.at.round;
-      Give(Node().Act(), Node().state(), false);
-      for (const std::string& text : Node().applied().said) said += (said.empty() ? "" : "\n") + text;
-    }
-    Log(Kind::kActed, act.at, [&](LogLine& line) {
-      line.until = act.until;
-      line.said = said;
-    });
-    const std::lock_guard lock(mutex_);
-    if (!said.empty()) News(said);
-    if (!stopped_at_ && AllStopped()) {
-      stopped_at_ = now_;
-      News("every robot stopped");
-    }
-    Look();
-  }
-
-  void Do(const rounds::FallBack&) {
-    FallBack();
-    const std::lock_guard lock(mutex_);
-    ++report_.fallbacks;
-    Look();
-    News(unheard_.empty() ? "falls back" : fmt::format("falls back: does not hear {}", Unheard()), 40);
-  }
-
-  void Do(const rounds::Adopted& a) {
-    Log(Kind::kAdopted, {a.decision.epoch, a.decision.base.round}, [&](LogLine& line) {
-      for (const auto& m : a.decision.members) line.members.push_back({m.robot, m.incarnation});
-    });
-    const std::lock_guard lock(mutex_);
-    std::vector<std::string> names;
-    for (const auto& m : a.decision.members) names.push_back(fleet_.robots[m.robot].name);
-    News(fmt::format("the team is {}", fmt::join(names, ", ")));
-    Look();
-  }
-
-  void Do(const rounds::Broken& broken) {
-    const std::lock_guard lock(mutex_);
-    report_.broken = broken.what;
-    News(fmt::format("this is a mistake of the round protocol: {}", broken.what), 50);
-  }
-
-  std::string Told(const koord::node::Failure& failed) const {
-    const std::string event =
-        failed.event == koord::node::kInit ? "init" : replica_->team().events()[failed.event].def->name;
-    return fmt::format("an operation of `{}` has no value: {}", event, Describe(failed.fault));
-  }
-
-  std::string Unheard() const {
-    std::vector<std::string> names;
-    for (const uint32_t r : unheard_) names.push_back(fleet_.robots[r].name);
-    return fmt::format("{}", fmt::join(names, ", "));
-  }
-
-  void FallBack() {
-    const std::vector<Cell>& covered = Node().FallBack(acted_);
-    Give(covered, Node().real(), true);
-    Log(Kind::kFellBack, contributed_, [&](LogLine& line) {
-      if (!covered.empty()) Node().Save(Node().real(), line.bytes);
-    });
-  }
-
-  void Give(const std::vector<Cell>& cells, const std::vector<Word>& state, bool always) {
-    for (const Cell cell : cells) {
-      const Word* at = state.data() + Node().cells().Address(cell, self_);
-      const auto& heap = replica_->team().heap();
-      if (orders_->PathOf(cell.variable, heap, at, path_)) senses_->GoesAlong(path_);
-      orders_->Give(cell.variable, heap, at, always);
-    }
-  }
-
-  bool AllStopped() {
-    const auto& layout = replica_->team().layout();
-    for (size_t r = 0; r < fleet_.robots.size(); ++r) {
-      if (Node().state()[layout.block(r) + layout.stopped()] == 0) return false;
-    }
-    return true;
   }
 
   const koord::Model& model_;
@@ -500,27 +302,9 @@ class RobotProcess {
   std::optional<runtime::codec::Bytes> record_;
   std::unique_ptr<LogWriter> log_;
   rounds::Settings settings_;
-  std::unique_ptr<rounds::Core> core_;
-  base::StopToken ended_;
+  std::unique_ptr<RoundThread> rounds_;
 
-  // Of the thread that runs the rounds.
-  Time now_ = 0;
-  rounds::Place contributed_;
-  Time contributed_at_ = 0, looked_at_ = 0;
-  uint64_t acted_ = 0;
-  std::vector<sim::Point> path_;  // kept for its memory
-
-  // Of both.
-  std::mutex mutex_;
   RobotReport report_;
-  Latencies latencies_;
-  rounds::Phase phase_ = rounds::Phase::kOutside;
-  rounds::Place place_;
-  bool active_ = false;
-  uint64_t refused_ = 0, foreign_ = 0, strange_ = 0;
-  std::vector<uint32_t> unheard_;
-  std::optional<Time> begun_at_, stopped_at_;
-  std::vector<std::pair<std::string, uint8_t>> news_;
 };
 
 }  // namespace

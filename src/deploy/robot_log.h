@@ -75,7 +75,7 @@ class LogWriter {
 };
 
 /// Is a log that was read.
-struct RobotLog {
+struct RobotLog {  // NOLINT(bugprone-exception-escape): moving JSON checks itself
   std::string path;
   nlohmann::json run;
   std::vector<nlohmann::json> lines;
