@@ -85,12 +85,34 @@ QosPointer Policies(const ros::Qos& qos, const std::string& hash) {
   return q;
 }
 
-Guid GuidOf(dds_entity_t entity) {
-  dds_guid_t guid{};
-  dds_get_guid(entity, &guid);
+Guid GuidOf(const dds_guid_t& guid) {
   Guid result;
   std::copy_n(guid.v, result.size(), result.begin());
   return result;
+}
+
+Guid GuidOf(dds_entity_t entity) {
+  dds_guid_t guid{};
+  dds_get_guid(entity, &guid);
+  return GuidOf(guid);
+}
+
+// Visits what discovery knows of a kind.
+template <class T, class Visit>
+void ForEachKnown(dds_entity_t participant, dds_entity_t kind, const Visit& visit) {
+  const dds_entity_t reader = dds_create_reader(participant, kind, nullptr, nullptr);
+  if (reader < 0) return;
+  std::array<void*, 64> samples{};
+  std::array<dds_sample_info_t, 64> infos;
+  for (;;) {
+    const int count = dds_take(reader, samples.data(), infos.data(), samples.size(), samples.size());
+    if (count <= 0) break;
+    for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
+      if (infos[i].valid_data) visit(*static_cast<const T*>(samples[i]));
+    }
+    dds_return_loan(reader, samples.data(), count);
+  }
+  dds_delete(reader);
 }
 
 void Arrive(dds_entity_t reader, void* subscription) {
@@ -334,31 +356,19 @@ void Participant::Hear(std::string_view bytes) {
 std::vector<Endpoint> Participant::Endpoints() {
   std::vector<Endpoint> all;
   for (const bool writes : {true, false}) {
-    const dds_entity_t reader = dds_create_reader(
-        entity_, writes ? DDS_BUILTIN_TOPIC_DCPSPUBLICATION : DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, nullptr,
-        nullptr);
-    if (reader < 0) continue;
-    std::array<void*, 64> samples{};
-    std::array<dds_sample_info_t, 64> infos;
-    for (;;) {
-      const int count = dds_take(reader, samples.data(), infos.data(), samples.size(), samples.size());
-      if (count <= 0) break;
-      for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
-        if (!infos[i].valid_data) continue;
-        const auto& found = *static_cast<const dds_builtintopic_endpoint_t*>(samples[i]);
-        Endpoint e;
-        std::copy_n(found.key.v, e.guid.size(), e.guid.begin());
-        std::copy_n(found.participant_key.v, e.participant.size(), e.participant.begin());
-        e.writes = writes;
-        e.topic = ros::TopicOfWire(found.topic_name);
-        e.type = ros::TypeOfWire(found.type_name);
-        e.qos = QosOf(found.qos);
-        e.hash = HashOf(found.qos);
-        if (!e.topic.empty() && !e.type.empty()) all.push_back(std::move(e));
-      }
-      dds_return_loan(reader, samples.data(), count);
-    }
-    dds_delete(reader);
+    ForEachKnown<dds_builtintopic_endpoint_t>(
+        entity_, writes ? DDS_BUILTIN_TOPIC_DCPSPUBLICATION : DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION,
+        [&](const dds_builtintopic_endpoint_t& found) {
+          Endpoint e;
+          e.guid = GuidOf(found.key);
+          e.participant = GuidOf(found.participant_key);
+          e.writes = writes;
+          e.topic = ros::TopicOfWire(found.topic_name);
+          e.type = ros::TypeOfWire(found.type_name);
+          e.qos = QosOf(found.qos);
+          e.hash = HashOf(found.qos);
+          if (!e.topic.empty() && !e.type.empty()) all.push_back(std::move(e));
+        });
   }
   return all;
 }
@@ -366,22 +376,9 @@ std::vector<Endpoint> Participant::Endpoints() {
 std::vector<Participant::Node> Participant::Nodes() {
   std::vector<Node> all;
   std::vector<Guid> alive;
-  const dds_entity_t reader = dds_create_reader(entity_, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr);
-  std::array<void*, 64> samples{};
-  std::array<dds_sample_info_t, 64> infos;
-  for (;;) {
-    const int count = dds_take(reader, samples.data(), infos.data(), samples.size(), samples.size());
-    if (count <= 0) break;
-    for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
-      if (!infos[i].valid_data) continue;
-      Guid guid;
-      std::copy_n(static_cast<const dds_builtintopic_participant_t*>(samples[i])->key.v, guid.size(),
-                  guid.begin());
-      alive.push_back(guid);
-    }
-    dds_return_loan(reader, samples.data(), count);
-  }
-  dds_delete(reader);
+  ForEachKnown<dds_builtintopic_participant_t>(
+      entity_, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT,
+      [&](const dds_builtintopic_participant_t& found) { alive.push_back(GuidOf(found.key)); });
   const std::lock_guard lock(mutex_);
   // Who is gone says so to the library, not in what was heard.
   std::erase_if(heard_, [&](const auto& h) { return std::ranges::find(alive, h.first) == alive.end(); });

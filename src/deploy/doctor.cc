@@ -21,10 +21,9 @@ namespace rondo::deploy {
 
 using platform::Carries;
 using platform::Topic;
+using transport::Seconds;
 
 namespace {
-
-double Seconds(int64_t time) { return static_cast<double>(time) * 1e-9; }
 
 // One topic of a robot, and what was heard on it.
 struct Watched {

@@ -8,6 +8,7 @@
 
 #include "koord/node/slow_calls.h"
 #include "sim/monitor.h"
+#include "transport/mailbox.h"
 
 namespace rondo::deploy {
 
@@ -15,6 +16,7 @@ using history::Entry;
 using history::Kind;
 using history::Wrong;
 using koord::semantics::Answer;
+using transport::Seconds;
 
 namespace {
 
@@ -47,8 +49,6 @@ class Answers final : public koord::semantics::Host {
   const FleetRecord& record_;
   uint64_t round_ = 0;
 };
-
-double Seconds(int64_t time) { return static_cast<double>(time) * 1e-9; }
 
 class Teller {
  public:

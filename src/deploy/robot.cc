@@ -21,10 +21,9 @@ namespace rondo::deploy {
 namespace rounds = runtime::rounds;
 using rounds::Time;
 using transport::BootTime;
+using transport::Seconds;
 
 namespace {
-
-double Seconds(Time time) { return static_cast<double>(time) * 1e-9; }
 
 // A part of a ROS name.
 std::string Plain(const std::string& text) {

@@ -221,7 +221,6 @@ class Merger {
       };
       std::ranges::stable_sort(out_.record.entries, {}, step);
     }
-    std::ranges::stable_sort(out_.said, {}, &std::pair<int64_t, std::string>::first);
     return std::move(out_);
   }
 
@@ -273,8 +272,6 @@ class Merger {
         for (const uint8_t byte : Bytes(call.at("question"))) question = question << 8 | byte;
         out_.answers[{e.robot, question}].push_back({e.round, Bytes(call.at("answer"))});
       }
-    } else if (!said.empty()) {
-      out_.said.emplace_back(e.time, said);
     }
     if (e.kind == Kind::kAdopted) {
       e.what = out_.record.members.size();

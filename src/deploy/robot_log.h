@@ -106,7 +106,6 @@ struct FleetRecord {
   };
   std::vector<Fault> faults;
   bool one_clock = true;  ///< all logs are of one machine; else times are as good as the clocks on the walls
-  std::vector<std::pair<int64_t, std::string>> said;  ///< to streams: when, and what
 };
 
 /// Puts logs together: those of one machine in order of time, others in order of rounds. `lease` and `stop_time` of the record

@@ -112,17 +112,7 @@ ExitStatus StatusOf(const runs::LaunchReport& report, const Options& options) {
 }
 
 ExitStatus Fail(const Options& options, const workspace::Session& session, const std::string& why) {
-  if (options.json) {
-    PrintJson({{"command", "launch"},
-               {"file", options.file},
-               {"status", ExitStatus::kRejected},
-               {"error", why},
-               {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}});
-  } else {
-    PrintDiagnostics(session.sources, session.diagnostics);
-    if (!why.empty()) PrintFailure(why);
-  }
-  return ExitStatus::kRejected;
+  return Refuse("launch", options.file, options.json, session.sources, session.diagnostics, why);
 }
 
 // A description for `ros2 launch`, which is Python.
@@ -181,12 +171,6 @@ ExitStatus Run(const Options& options) {
   launch.executable = fs::read_symlink("/proc/self/exe").string();
   launch.duration = options.duration;
   launch.logs = options.logs;
-  if (launch.logs.empty()) {
-    std::string folder = (fs::temp_directory_path() / "rondo-XXXXXX").string();
-    if (::mkdtemp(folder.data()) == nullptr)
-      return Fail(options, session, "cannot make a folder for the logs");
-    launch.logs = folder;
-  }
   std::optional<trace::Writer> writer;
   if (!options.trace.empty()) {
     auto opened = trace::Writer::Open(options.trace);
@@ -195,6 +179,12 @@ ExitStatus Run(const Options& options) {
                   fmt::format("cannot write `{}`: {}", options.trace, opened.error().message));
     writer.emplace(std::move(opened).value());
     launch.trace = &*writer;
+  }
+  if (launch.logs.empty()) {
+    std::string folder = (fs::temp_directory_path() / "rondo-XXXXXX").string();
+    if (::mkdtemp(folder.data()) == nullptr)
+      return Fail(options, session, "cannot make a folder for the logs");
+    launch.logs = folder;
   }
   base::Result<runs::LaunchReport> ran = base::Error{};
   {

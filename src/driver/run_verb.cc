@@ -63,17 +63,7 @@ std::string Tell(const deploy::RobotReport& report) {
 }
 
 ExitStatus Fail(const Options& options, const workspace::Session& session, const std::string& why) {
-  if (options.json) {
-    PrintJson({{"command", "run"},
-               {"file", options.file},
-               {"status", ExitStatus::kRejected},
-               {"error", why},
-               {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}});
-  } else {
-    PrintDiagnostics(session.sources, session.diagnostics);
-    if (!why.empty()) PrintFailure(why);
-  }
-  return ExitStatus::kRejected;
+  return Refuse("run", options.file, options.json, session.sources, session.diagnostics, why);
 }
 
 ExitStatus Run(const Options& options) {

@@ -76,6 +76,23 @@ verdict::ExitStatus WritePicture(const std::string& path, const std::string& svg
 
 void PrintFailure(const std::string& message) { PrintError(fmt::format("rondo: {}\n", message)); }
 
+verdict::ExitStatus Refuse(const std::string& command, const std::string& file, bool json,
+                           const diag::SourceSet& sources, const diag::Diagnostics& diagnostics,
+                           const std::string& why) {
+  constexpr auto kStatus = verdict::ExitStatus::kRejected;
+  if (json) {
+    PrintJson({{"command", command},
+               {"file", file},
+               {"status", kStatus},
+               {"error", why},
+               {"diagnostics", diag::RenderJson(sources, diagnostics)}});
+  } else {
+    PrintDiagnostics(sources, diagnostics);
+    if (!why.empty()) PrintFailure(why);
+  }
+  return kStatus;
+}
+
 void PrintStatus(verdict::ExitStatus status) {
   if (status != verdict::ExitStatus::kEstablished) Print(fmt::format("exit {}\n", static_cast<int>(status)));
 }

@@ -30,6 +30,11 @@ verdict::ExitStatus WritePicture(const std::string& path, const std::string& svg
 /// Writes `rondo: message` to standard error, for what went wrong outside any source file.
 void PrintFailure(const std::string& message);
 
+/// Says why a verb cannot do its work, as JSON or in words: the diagnostics, and `why` unless it is empty. Returns `kRejected`.
+verdict::ExitStatus Refuse(const std::string& command, const std::string& file, bool json,
+                           const diag::SourceSet& sources, const diag::Diagnostics& diagnostics,
+                           const std::string& why);
+
 /// Writes a line such as `exit 3`, for every status but success.
 void PrintStatus(verdict::ExitStatus status);
 

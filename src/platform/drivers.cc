@@ -18,10 +18,6 @@ using sim::PortRole;
 
 namespace {
 
-Point PointOf(const ros::geometry_msgs::Point& p) { return {p.x, p.y, p.z}; }
-
-bool Finite(const Point& p) { return std::isfinite(p[0] + p[1] + p[2]); }
-
 std::string BaseOf(const sim::Fleet& fleet, size_t robot) {
   return fleet.robots[robot].node_namespace + "/base_link";
 }

@@ -14,18 +14,13 @@ using sim::Point;
 using sim::Port;
 using sim::PortRole;
 using transport::BootTime;
+using transport::Seconds;
 
 namespace {
 
 constexpr size_t kMostRays = 100'000;
 
-double Seconds(Time time) { return static_cast<double>(time) * 1e-9; }
-
 bool IsSensor(const koord::Model& model, const Port& port) { return !sim::IsActuator(model, port); }
-
-Point PointOf(const ros::geometry_msgs::Point& p) { return {p.x, p.y, p.z}; }
-
-bool Finite(const Point& p) { return std::isfinite(p[0] + p[1] + p[2]); }
 
 }  // namespace
 

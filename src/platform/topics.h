@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,6 +59,10 @@ ros::std_msgs::Header HeaderOf(const std::string& frame);
 /// Converts times since 1970 in nanoseconds.
 ros::builtin_interfaces::Time StampOf(int64_t nanoseconds);
 int64_t WallTime();
+
+/// Converts a point; `Finite`: none of its numbers is infinite or none.
+inline sim::Point PointOf(const ros::geometry_msgs::Point& p) { return {p.x, p.y, p.z}; }
+inline bool Finite(const sim::Point& p) { return std::isfinite(p[0] + p[1] + p[2]); }
 
 /// Converts angles around the vertical axis, in radians, and orientations; of one that is none, the angle is 0.
 ros::geometry_msgs::Quaternion Turned(double yaw);

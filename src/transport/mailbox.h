@@ -7,6 +7,8 @@ namespace rondo::transport {
 
 /// Returns what CLOCK_BOOTTIME says, in nanoseconds: it never steps back and runs through suspension.
 runtime::rounds::Time BootTime();
+/// Converts a span to seconds, as people have them.
+inline double Seconds(runtime::rounds::Time span) { return static_cast<double>(span) * 1e-9; }
 
 /// Hands datagrams from threads to another one.
 class Mailbox {
