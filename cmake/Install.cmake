@@ -1,11 +1,14 @@
 # `cmake --install`: the program, models, examples and documents, and a package that finds them.
 #
-#   find_package(rondo REQUIRED)     # rondo::rondo is the program; rondo_MODELS and rondo_EXAMPLES are folders
+#   find_package(rondo REQUIRED)     # rondo::rondo is the program; rondo::adapter has the header of adapters of one's own;
+#                                    # rondo_MODELS and rondo_EXAMPLES are folders
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(data ${CMAKE_INSTALL_DATADIR}/rondo)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/rondo)
 install(TARGETS rondo EXPORT rondo-targets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS rondo_adapter EXPORT rondo-targets)
+install(FILES src/platform/adapter.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rondo)
 install(DIRECTORY models examples DESTINATION ${data})
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.svg")

@@ -16,6 +16,14 @@ enum class Profile : uint8_t {
   kWifi,  ///< a radio: robots are found at the addresses of `peers`, and nothing is sent to all but what finds them
 };
 
+/// Names the keys that a participant has: a folder as `ros2 security` makes them. All participants of a process have those of
+/// the first: Cyclone DDS 0.10 looks at no other permissions.
+struct Keys {
+  std::string folder =
+      {};  ///< with `cert.pem`, `key.pem`, `permissions.p7s` and so on; empty: there are none
+  std::string enclave = "/";  ///< what ROS 2 calls it
+};
+
 /// Says which network a participant is in, and how it finds others there.
 struct Network {
   uint32_t domain = 0;  ///< 0 to 232 (`ROS_DOMAIN_ID`)
@@ -24,6 +32,7 @@ struct Network {
   std::vector<std::string> peers = {};  ///< addresses of other machines
   bool old_identities =
       false;  ///< ROS 2 Humble and before: identities of 24 bytes in what nodes say of themselves
+  Keys keys = {};
   uint32_t lost_in_thousand = 0;  ///< for tests: so many packets of a thousand are not sent
 };
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "dds/protection.h"
 #include "dds/raw_type.h"
 #include "dds/sockets.h"
 #include "ros/discovery_info.h"
@@ -197,8 +198,9 @@ base::Result<std::unique_ptr<Participant>> Participant::Open(const Network& netw
         return Failed("cannot take part in the network", domain);
     }
     const QosPointer qos(dds_create_qos());
-    const std::string enclave = "enclave=/;";
+    const std::string enclave = fmt::format("enclave={};", network.keys.enclave);
     dds_qset_userdata(qos.get(), enclave.data(), enclave.size());
+    Protect(qos.get(), network.keys);
     p->entity_ = dds_create_participant(network.domain, qos.get(), nullptr);
     if (p->entity_ < 0) {
       base::Error error = Failed("cannot take part in the network", p->entity_);

@@ -43,8 +43,7 @@ class Examination {
   base::Result<Health> Run(const dds::Network& network, double seconds, const base::StopToken& stop,
                            diag::Diagnostics& diagnostics) {
     const size_t before = diagnostics.errors();
-    ports_ = sim::FindPorts(model_, fleet_.robots, diagnostics);
-    platform::CheckPorts(model_, fleet_, ports_, diagnostics);
+    ports_ = platform::PortsOf(model_, fleet_, diagnostics);
     if (diagnostics.errors() != before) return base::Error{};
     auto participant = dds::Participant::Open(network);
     if (!participant.ok()) return participant.error();
@@ -103,7 +102,7 @@ class Examination {
         return done;
       for (const sim::Port& port : ports_) {
         const auto topic = platform::TopicOf(model_, fleet_, r, port);
-        if (!topic) continue;
+        if (!topic || !topic->library.empty()) continue;
         const bool known =
             std::ranges::any_of(watched_, [&](const Watched& w) { return w.topic.name == topic->name; });
         if (!known) watched_.push_back({r, *topic, !sim::IsActuator(model_, port), 0, {}, {}, {}});
@@ -113,7 +112,7 @@ class Examination {
       if (!watched_[i].sensor) continue;
       const Topic& topic = watched_[i].topic;
       if (auto done =
-              subscribe(topic.name, platform::TypeOf(topic.carries), ros::kSensorData,
+              subscribe(topic.name, platform::TypeOf(topic.carries), topic.qos,
                         [this, i](std::string_view bytes, const dds::Received&) { Sensed(i, bytes); });
           !done.ok())
         return done;
@@ -253,11 +252,12 @@ class Examination {
         Wrong(name, fmt::format("nobody {} {}", w.sensor ? "sends on" : "listens to", w.topic.name),
               fmt::format("is the driver running? Or is `{}` on another topic: `[ports]` in the fleet file",
                           w.topic.port));
-      } else if (w.sensor && w.count == 0) {
+      } else if (w.sensor && w.count == 0 && w.topic.carries != Carries::kGoalStatus) {
         Wrong(
             name, fmt::format("nothing comes on {}, though somebody would send there", w.topic.name),
             "is it a lifecycle node that is not active (`ros2 lifecycle get NODE`), or a sensor that stands still?");
-      } else if (w.behind && std::fabs(*w.behind) > std::max(0.1, w.topic.max_age)) {
+      } else if (!fleet_.ros.use_sim_time && w.behind &&
+                 std::fabs(*w.behind) > std::max(0.1, w.topic.max_age)) {
         Wrong(name,
               fmt::format("stamps on {} are {:.1f} s {} the clock here", w.topic.name, std::fabs(*w.behind),
                           *w.behind > 0 ? "behind" : "ahead of"),

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "koord/node/slow_calls.h"
+#include "platform/topics.h"
 #include "sim/monitor.h"
 #include "transport/mailbox.h"
 
@@ -232,7 +233,7 @@ base::Result<LogsReport> JudgeLogs(const std::vector<RobotLog>& logs, const koor
           fmt::format("`{}` is there twice, or is the log of a robot that is there", log.path)};
   }
   const size_t before = diagnostics.errors();
-  const std::vector<sim::Port> ports = sim::FindPorts(model, fleet.robots, diagnostics);
+  const std::vector<sim::Port> ports = platform::PortsOf(model, fleet, diagnostics);
   if (diagnostics.errors() != before) return base::Error{};
   const auto replica = Replica::Make(model, fleet, ports, 0, logs[0].seed, nullptr, diagnostics);
   if (replica == nullptr) return base::Error{};

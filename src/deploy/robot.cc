@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <thread>
 
+#include "deploy/clocked_way.h"
 #include "deploy/echo.h"
 #include "deploy/round_thread.h"
 #include "deploy/status.h"
 #include "platform/orders.h"
 #include "platform/senses.h"
+#include "ros/names.h"
 #include "ros/rcl_interfaces.h"
 #include "runtime/durable/file_disk.h"
 #include "transport/dds/way.h"
@@ -20,24 +22,9 @@ namespace rondo::deploy {
 
 namespace rounds = runtime::rounds;
 using rounds::Time;
-using transport::BootTime;
 using transport::Seconds;
 
 namespace {
-
-// A part of a ROS name.
-std::string Plain(const std::string& text) {
-  std::string name;
-  for (const char c : text) {
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
-      name += c;
-    } else if (!name.empty() && name.back() != '_') {
-      name += '_';
-    }
-  }
-  while (name.ends_with('_')) name.pop_back();
-  return name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) != 0 ? "p" + name : name;
-}
 
 uint64_t Agreement(const RobotOptions& options, const Replica& replica) {
   runtime::codec::Bytes bytes;
@@ -71,12 +58,12 @@ class RobotProcess {
         options_(options),
         diagnostics_(diagnostics),
         self_(options.robot),
-        name_(fleet.robots[self_].name) {}
+        name_(fleet.robots[self_].name),
+        clock_(fleet.ros.use_sim_time) {}
 
   base::Result<bool> Prepare() {
     const size_t before = diagnostics_.errors();
-    ports_ = sim::FindPorts(model_, fleet_.robots, diagnostics_);
-    platform::CheckPorts(model_, fleet_, ports_, diagnostics_);
+    ports_ = platform::PortsOf(model_, fleet_, diagnostics_);
     if (diagnostics_.errors() != before) return Reported();
     planner_ = std::make_unique<PlannerThread>(fleet_.clearance / 2);
     replica_ = Make(planner_.get());
@@ -86,11 +73,12 @@ class RobotProcess {
     if (!participant.ok()) return participant.error();
     participant_ = std::move(participant).value();
     node_ = participant_->AddNode({"/" + fleet_.robots[self_].node_namespace, "rondo"});
+    if (auto begun = clock_.Begin(*participant_, node_); !begun.ok()) return begun;
     senses_ = std::make_unique<platform::Senses>(model_, fleet_, ports_, self_, replica_->body(self_),
-                                                 replica_->team().heap());
+                                                 replica_->team().heap(), clock_);
     if (auto begun = senses_->Begin(*participant_, node_); !begun.ok()) return begun;
     replica_->node().SetSensors(senses_.get());
-    orders_ = std::make_unique<platform::Orders>(model_, fleet_, ports_, self_, *senses_);
+    orders_ = std::make_unique<platform::Orders>(model_, fleet_, ports_, self_, *senses_, clock_);
     if (auto begun = orders_->Begin(*participant_, node_); !begun.ok()) return begun;
     auto diagnostics = participant_->Publish(node_, "/diagnostics",
                                              ros::diagnostic_msgs::DiagnosticArray::kMessage, ros::kDefault);
@@ -102,7 +90,8 @@ class RobotProcess {
     if (auto echoes = Echo(); !echoes.ok()) return echoes;
     std::vector<std::string> names;
     for (const sim::FleetRobot& robot : fleet_.robots) names.push_back(robot.name);
-    auto way = transport::dds::Connect(*participant_, node_, {Plain(options_.program_name), names, self_});
+    auto way =
+        transport::dds::Connect(*participant_, node_, {ros::Plain(options_.program_name), names, self_});
     if (!way.ok()) return way.error();
     way_ = std::move(way).value();
     return OpenFiles(names);
@@ -110,9 +99,11 @@ class RobotProcess {
 
   RobotReport Run() {
     if (WaitForSensors()) {
-      rounds_ = std::make_unique<RoundThread>(fleet_, self_, *replica_, *senses_, *orders_, log_.get());
+      rounds_ =
+          std::make_unique<RoundThread>(fleet_, self_, *replica_, *senses_, *orders_, clock_, log_.get());
+      ClockedWay way(*way_, clock_);
       const base::StopToken ended;
-      std::thread thread([&] { rounds_->Run(settings_, disk_.get(), record_, *way_, ended); });
+      std::thread thread([&] { rounds_->Run(settings_, disk_.get(), record_, way, ended); });
       report_.ending = Watch();
       ended.RequestStop();
       thread.join();
@@ -181,7 +172,7 @@ class RobotProcess {
 
   void Tell(const std::string& text, uint8_t level = 20) {
     ros::rcl_interfaces::Log m;
-    m.stamp = platform::StampOf(platform::WallTime());
+    m.stamp = platform::StampOf(clock_.Stamp());
     m.level = level;
     m.name = fleet_.robots[self_].node_namespace + ".rondo";
     m.msg = text;
@@ -194,7 +185,7 @@ class RobotProcess {
     std::string last;
     for (int i = 0;; ++i) {
       if (options_.stop.StopRequested()) return false;
-      const std::string why = senses_->Unusable(BootTime());
+      const std::string why = senses_->Unusable();
       if (why.empty()) return true;
       if (i % 20 == 10 && why != last) Tell("waiting: " + (last = why), 30);
       if (i % 10 == 0) Publish(why, nullptr);
@@ -212,13 +203,14 @@ class RobotProcess {
       const std::optional<RobotEnding> ending = Ending(view);
       if (Clock::now() >= next || ending) {
         next = Clock::now() + std::chrono::seconds(1);
-        const std::string why = senses_->Unusable(BootTime());
+        const std::string why = senses_->Unusable();
         Publish(why, &view);
         if (blind != !why.empty()) Tell(why.empty() ? "the sensors are usable again" : "skips: " + why, 30);
         blind = !why.empty();
         if (!view.begun_at && seconds++ % 10 == 2) Tell(Awaited(view), 30);
       }
       for (const auto& [text, level] : rounds_->TakeNews()) Tell(text, level);
+      if (const std::string problem = orders_->TakeProblem(); !problem.empty()) Tell(problem, 40);
       if (ending) return *ending;
     }
   }
@@ -232,7 +224,7 @@ class RobotProcess {
   }
 
   std::optional<RobotEnding> Ending(const RoundView& view) const {
-    const Time now = BootTime();
+    const Time now = clock_.Now();
     if (!view.broken.empty()) return RobotEnding::kBroken;
     if (options_.stop.StopRequested()) return RobotEnding::kInterrupted;
     if (view.phase == rounds::Phase::kHalted) return RobotEnding::kHalted;
@@ -276,7 +268,7 @@ class RobotProcess {
       s.strange = view->strange;
       s.unheard = view->unheard;
     }
-    (void)status_->Publish(MessageOf(s)).ok();
+    (void)status_->Publish(MessageOf(s, clock_.Stamp())).ok();
   }
 
   const koord::Model& model_;
@@ -291,6 +283,7 @@ class RobotProcess {
   uint64_t agreement_ = 0;
   std::unique_ptr<dds::Participant> participant_;
   size_t node_ = 0;
+  platform::Clock clock_;
   std::unique_ptr<platform::Senses> senses_;
   std::unique_ptr<platform::Orders> orders_;
   std::unique_ptr<dds::Publisher> status_, rosout_;
@@ -327,7 +320,7 @@ std::string_view Name(RobotEnding ending) {
 std::string AgreementOf(const koord::Model& model, const sim::Fleet& fleet, const RobotOptions& options,
                         diag::Diagnostics& diagnostics) {
   const size_t before = diagnostics.errors();
-  const std::vector<sim::Port> ports = sim::FindPorts(model, fleet.robots, diagnostics);
+  const std::vector<sim::Port> ports = platform::PortsOf(model, fleet, diagnostics);
   if (diagnostics.errors() != before) return {};
   const auto replica = Replica::Make(model, fleet, ports, 0, options.seed, nullptr, diagnostics);
   return replica == nullptr ? std::string() : fmt::format("{:016x}", Agreement(options, *replica));

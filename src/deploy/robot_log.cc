@@ -132,6 +132,7 @@ void LogWriter::Write(const LogLine& line) {
           {{"question", fmt::format("{:016x}", call.question)}, {"answer", base::Hex(call.value)}});
   }
   if (line.kind == Kind::kActed) j["until"] = line.until;
+  if (line.clock) j["clock"] = *line.clock;
   if (!line.said.empty()) j["said"] = line.said;
   for (const history::Life& life : line.members)
     j["members"].push_back({{"robot", life.robot}, {"life", life.incarnation}});
@@ -259,7 +260,9 @@ class Merger {
     e.what = history::kNothing;
     if (line.contains("store")) e.what = Image(line["store"]);
     good_ = good_ && (e.kind != Kind::kStored || line.contains("store"));
-    if (e.kind == Kind::kActed) e.until = Least<int64_t>(line.at("until"), kLatest) + shift;
+    // A simulated clock is the same on all machines.
+    if (line.contains("clock")) e.clock = Least<int64_t>(line["clock"], kLatest);
+    if (e.kind == Kind::kActed) e.until = Least<int64_t>(line.at("until"), kLatest) + (e.clock ? 0 : shift);
     const std::string said = line.contains("said") ? line["said"].get<std::string>() : std::string();
     if (e.kind == Kind::kContributed) {
       if (!said.empty()) out_.faults.push_back({e.time, e.robot, said});

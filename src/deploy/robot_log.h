@@ -17,8 +17,10 @@ namespace rondo::deploy {
 /// Is a line of a robot's log, as its thread hands it on. Memory is kept.
 struct LogLine {
   history::Kind kind = history::Kind::kStarted;
-  int64_t time = 0, until = 0;  ///< CLOCK_BOOTTIME, nanoseconds
-  int64_t stamp = 0;            ///< since 1970
+  int64_t time = 0;              ///< CLOCK_BOOTTIME, nanoseconds
+  int64_t stamp = 0;             ///< since 1970
+  std::optional<int64_t> clock;  ///< of the clock by which it runs, if that is simulated
+  int64_t until = 0;             ///< kActed: on the clock by which it runs
   uint64_t epoch = 0, round = 0;
   runtime::codec::Bytes bytes;  ///< kStored, kFellBack: a state; kContributed: what was said
   std::vector<uint32_t> waits;

@@ -19,12 +19,13 @@ constexpr Time kLook = 100'000'000;
 }
 
 RoundThread::RoundThread(const sim::Fleet& fleet, uint32_t robot, Replica& replica, platform::Senses& senses,
-                         platform::Orders& orders, LogWriter* log)
+                         platform::Orders& orders, const platform::Clock& clock, LogWriter* log)
     : fleet_(fleet),
       self_(robot),
       replica_(replica),
       senses_(senses),
       orders_(orders),
+      clock_(clock),
       log_(log),
       unheard_(fleet.robots.size()) {}
 
@@ -74,8 +75,10 @@ void RoundThread::Log(Kind kind, rounds::Place at, const Fill& fill) {
   if (log_ == nullptr) return;
   log_->Put([&](LogLine& line) {
     line.kind = kind;
-    line.time = now_ == 0 ? BootTime() : now_;
+    // Robots with one simulated clock hear it at different moments: what was before what, the clock of the machine says.
+    line.time = now_ == 0 || clock_.simulated() ? BootTime() : now_;
     line.until = 0;
+    line.clock = clock_.simulated() ? std::optional(now_) : std::nullopt;
     line.stamp = platform::WallTime();
     line.epoch = at.epoch;
     line.round = at.round;
@@ -115,7 +118,7 @@ void RoundThread::Do(const rounds::Contributed& c) {
   replica_.calls().Clear();
   (void)replica_.calls().functions().TakeLog();  // what is said counts when the round is final
   contributed_ = c.at;
-  contributed_at_ = now_;
+  contributed_at_ = BootTime();
   if (Node().blind()) FallBack();
   const std::lock_guard lock(mutex_);
   if (!view_.begun_at) {
@@ -138,7 +141,7 @@ void RoundThread::Do(const rounds::Committed& c) {
   Log(Kind::kCommitted, c.at, [](LogLine&) {});
   const std::lock_guard lock(mutex_);
   if (contributed_.epoch == c.at.epoch && contributed_.round + 1 == c.at.round)
-    latencies_.Add(now_ - contributed_at_);
+    latencies_.Add(BootTime() - contributed_at_);
   view_.rounds = std::max(view_.rounds, c.at.round);
   Look();
 }

@@ -39,7 +39,7 @@ class RoundThread {
  public:
   /// @param log  nullptr: there is none. All outlive this.
   RoundThread(const sim::Fleet& fleet, uint32_t robot, Replica& replica, platform::Senses& senses,
-              platform::Orders& orders, LogWriter* log);
+              platform::Orders& orders, const platform::Clock& clock, LogWriter* log);
 
   /// Begins a life, and runs rounds until somebody asks for a stop.
   /// @param record  what an earlier life left on the disk.
@@ -75,6 +75,7 @@ class RoundThread {
   Replica& replica_;
   platform::Senses& senses_;
   platform::Orders& orders_;
+  const platform::Clock& clock_;
   LogWriter* log_;
   runtime::rounds::Settings settings_;
   std::unique_ptr<runtime::rounds::Core> core_;

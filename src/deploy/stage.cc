@@ -21,14 +21,14 @@ uint64_t Every(double period, double step) {
 
 }  // namespace
 
-Stage::Stage(const koord::Model& model, const sim::Fleet& fleet, uint64_t seed, trace::Writer* trace)
-    : model_(model), fleet_(fleet), seed_(seed), recorder_(trace, fleet) {}
+Stage::Stage(const koord::Model& model, const sim::Fleet& fleet, uint64_t seed, double speed,
+             trace::Writer* trace)
+    : model_(model), fleet_(fleet), seed_(seed), speed_(speed), recorder_(trace, fleet) {}
 
 base::Result<bool> Stage::Begin(dds::Participant& participant, const nlohmann::json& run,
                                 diag::Diagnostics& diagnostics) {
   const size_t before = diagnostics.errors();
-  ports_ = sim::FindPorts(model_, fleet_.robots, diagnostics);
-  platform::CheckPorts(model_, fleet_, ports_, diagnostics);
+  ports_ = platform::PortsOf(model_, fleet_, diagnostics);
   if (diagnostics.errors() != before) return base::Error{};
   for (size_t r = 0; r < fleet_.robots.size(); ++r) {
     const sim::FleetRobot& robot = fleet_.robots[r];
@@ -42,7 +42,7 @@ base::Result<bool> Stage::Begin(dds::Participant& participant, const nlohmann::j
       fleet_, bodies_, [this](double t, const std::string& robot, const std::string& with) {
         recorder_.Event(t, {{"event", "collision"}, {"robot", robot}, {"with", with}});
       });
-  drivers_ = std::make_unique<platform::Drivers>(model_, fleet_, ports_, bodies_);
+  drivers_ = std::make_unique<platform::Drivers>(model_, fleet_, ports_, bodies_, fleet_.ros.use_sim_time);
   if (auto begun = drivers_->Begin(participant); !begun.ok()) return begun;
   nlohmann::json record = run;
   for (size_t r = 0; r < bodies_.size(); ++r)
@@ -63,9 +63,10 @@ void Stage::Run() {
   const uint64_t tell = Every(kTold, dt), pose = Every(1 / fleet_.pose_rate, dt),
                  scan = Every(1 / fleet_.lidar.rate, dt);
   auto due = Clock::now();
-  const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(dt));
+  const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(dt / speed_));
   std::vector<sim::Rays> rays;
   touches_->Observe(0);
+  drivers_->TellTime(0);
   for (uint64_t step = 1; !stop_.StopRequested(); ++step) {
     due += period;
     const auto now = Clock::now();
@@ -79,6 +80,7 @@ void Stage::Run() {
       return;
     }
     const double t = report_.time = static_cast<double>(step) * dt;
+    drivers_->TellTime(t);
     touches_->Observe(t);
     rays.clear();
     if (scans_ && step % scan == 0) {

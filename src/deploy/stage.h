@@ -26,11 +26,13 @@ struct StageReport {
   std::string failed;             ///< the state of a body is not finite; empty: all is well
 };
 
-/// Lets simulated bodies move in real time, on a thread of its own; robots reach them over ROS 2 alone.
+/// Lets simulated bodies move by the clock, on a thread of its own; robots reach them over ROS 2 alone.
 class Stage {
  public:
+  /// @param speed  how many seconds pass in the world in one: not 1 only if time is simulated.
   /// @param trace  gets what happens, if there is one. All outlive this.
-  Stage(const koord::Model& model, const sim::Fleet& fleet, uint64_t seed, trace::Writer* trace);
+  Stage(const koord::Model& model, const sim::Fleet& fleet, uint64_t seed, double speed,
+        trace::Writer* trace);
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
   ~Stage() { End(); }
@@ -49,6 +51,7 @@ class Stage {
   const koord::Model& model_;
   const sim::Fleet& fleet_;
   const uint64_t seed_;
+  const double speed_;
   std::vector<sim::Port> ports_;
   std::vector<std::unique_ptr<sim::Body>> bodies_;
   std::vector<std::mt19937_64> noise_;

@@ -19,9 +19,9 @@ uint64_t Whole(const std::string& text) { return std::strtoull(text.c_str(), nul
 
 }  // namespace
 
-ros::diagnostic_msgs::DiagnosticArray MessageOf(const RobotStatus& s) {
+ros::diagnostic_msgs::DiagnosticArray MessageOf(const RobotStatus& s, int64_t stamp) {
   ros::diagnostic_msgs::DiagnosticArray array;
-  array.header = platform::HeaderOf("");
+  array.header = platform::HeaderOf("", stamp);
   auto& d = array.status.emplace_back();
   d.name = std::string(kName) + s.robot;
   d.hardware_id = s.robot;

@@ -24,7 +24,8 @@ struct RobotStatus {
 };
 
 /// Returns the status as a message: `ok`, or a warning or an error with the reason in words.
-ros::diagnostic_msgs::DiagnosticArray MessageOf(const RobotStatus& status);
+/// @param stamp  nanoseconds since 1970.
+ros::diagnostic_msgs::DiagnosticArray MessageOf(const RobotStatus& status, int64_t stamp);
 /// Returns the statuses of robots in a message; others are left out.
 std::vector<RobotStatus> StatusesOf(const ros::diagnostic_msgs::DiagnosticArray& message);
 

@@ -24,7 +24,7 @@ TEST(RobotStatus, IsReadAsItWasWritten) {
   s.late = 5;
   s.refused = 6;
   s.unheard = {"car0", "drone1"};
-  const auto message = MessageOf(s);
+  const auto message = MessageOf(s, 1);
   ASSERT_EQ(message.status.size(), 1U);
   EXPECT_EQ(message.status[0].level, 1);  // a warning
   EXPECT_EQ(message.status[0].message, "does not hear car0, drone1");
@@ -40,11 +40,11 @@ TEST(RobotStatus, IsReadAsItWasWritten) {
 TEST(RobotStatus, TheWorstIsSaid) {
   RobotStatus s;
   s.active = true;
-  EXPECT_EQ(MessageOf(s).status[0].level, 0);
+  EXPECT_EQ(MessageOf(s, 1).status[0].level, 0);
   s.unheard = {"car0"};
   s.sensors = "`psn`: nothing has come on /car1/odom yet";
-  EXPECT_EQ(MessageOf(s).status[0].level, 2);
-  EXPECT_EQ(MessageOf(s).status[0].message, s.sensors);
+  EXPECT_EQ(MessageOf(s, 1).status[0].level, 2);
+  EXPECT_EQ(MessageOf(s, 1).status[0].message, s.sensors);
 }
 
 TEST(RobotStatus, DiagnosticsOfOthersAreLeftOut) {

@@ -4,6 +4,7 @@
 
 #include "base/counted.h"
 #include "deploy/doctor.h"
+#include "deploy/keystore.h"
 #include "driver/command.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
@@ -75,17 +76,16 @@ ExitStatus Run(const Options& options) {
   deploy::Health health;
   std::string problem;
   bool reported = false;
-  const auto network = [&](const dds::Network& usual) {
-    const auto with = dds::WithEnvironment(usual);
+  const auto network = [&](const base::Result<dds::Network>& with) {
     if (!with.ok()) problem = with.error().message;
-    return with.ok() ? with.value() : usual;
+    return with.ok() ? with.value() : dds::Network();
   };
   if (options.file.empty()) {
-    const dds::Network used = network({.profile = dds::Profile::kLan});
+    const dds::Network used = network(dds::WithEnvironment({.profile = dds::Profile::kLan}));
     if (problem.empty()) health.troubles = deploy::ExamineMachine(used);
   } else if (const auto program = runs::LoadRobotProgram(
                  runs::FindSimulationFiles(options.file, options.spec, options.fleet), {}, session)) {
-    const dds::Network used = network(program->texts.network);
+    const dds::Network used = network(runs::NetworkOf(*program, deploy::kDoctorEnclave));
     const std::string agreement =
         deploy::AgreementOf(program->loaded->model, program->fleet, program->texts, session.diagnostics);
     if (problem.empty() && !agreement.empty()) {

@@ -29,6 +29,7 @@ struct Options {
   std::string ros2;
   std::optional<uint64_t> seed;
   double duration = 0;
+  double speed = 1;
   bool fail_on_collision = false;
   bool json = false;
 };
@@ -170,6 +171,10 @@ ExitStatus Run(const Options& options) {
   runs::LaunchOptions launch;
   launch.executable = fs::read_symlink("/proc/self/exe").string();
   launch.duration = options.duration;
+  launch.speed = options.speed;
+  if (options.speed != 1 && !program->fleet.ros.use_sim_time)
+    return Fail(options, session,
+                "`--speed` needs a fleet whose time is simulated: `use_sim_time = true` in its `[ros]`");
   launch.logs = options.logs;
   std::optional<trace::Writer> writer;
   if (!options.trace.empty()) {
@@ -247,6 +252,9 @@ void AddLaunchVerb(CLI::App& app, ExitStatus& status) {
   verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
   verb.Option("--duration", options->duration, "seconds from the first round on; default: as the fleet says")
       .Between(1e-3, 1e7);
+  verb.Option("--speed", options->speed,
+              "how many seconds pass in one, if the fleet has `use_sim_time`; default: 1")
+      .Between(0.01, 100.0);
   verb.Option("--seed", options->seed, "of everything that is random; default: the fleet's, or 1");
   verb.Option("--logs", options->logs,
               "a folder for what each robot logs and says; default: it is kept only if something is wrong");

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/counted.h"
+#include "deploy/keystore.h"
 #include "driver/command.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
@@ -82,7 +83,7 @@ ExitStatus Run(const Options& options) {
                             near.empty() ? fmt::format("it has {}", fmt::join(names, ", "))
                                          : fmt::format("did you mean `{}`?", near)));
   }
-  auto network = dds::WithEnvironment(program->texts.network);
+  auto network = runs::NetworkOf(*program, deploy::EnclaveOf(*robot));
   if (!network.ok()) return Fail(options, session, network.error().message);
   deploy::RobotOptions run = program->texts;
   run.robot = static_cast<uint32_t>(robot - robots.begin());
@@ -97,8 +98,11 @@ ExitStatus Run(const Options& options) {
   {
     const InterruptScope interrupt(run.stop);
     if (run.tell)
-      run.tell(fmt::format("domain {}; DDS without security: whoever is in the network can disturb it",
-                           run.network.domain));
+      run.tell(
+          fmt::format("domain {}; {}", run.network.domain,
+                      run.network.keys.folder.empty()
+                          ? "DDS without security: whoever is in the network can disturb it (`rondo keys`)"
+                          : fmt::format("DDS with security: the keys are in `{}`", run.network.keys.folder)));
     ran = deploy::RunRobot(program->loaded->model, program->fleet, run, session.diagnostics);
   }
   if (!ran.ok()) return Fail(options, session, ran.error().message);

@@ -23,6 +23,7 @@ void AddCampaignVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddRunVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddLaunchVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddDoctorVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddKeysVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddReplayVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddPlotVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddReachVerb(CLI::App& app, verdict::ExitStatus& status);

@@ -96,7 +96,7 @@ class Check {
       Say(Wrong::kTwice, fmt::format("{} says two different things in round {}", Of(e), e.round));
     if (fresh && e.skips) skipped_.insert({e.robot, e.epoch, e.round});
     if (fresh && !e.waits.empty()) waiting_[{e.robot, e.epoch, e.round}] = e.waits;
-    if (fresh) spoke_[{LifeOf(e), e.epoch, e.round}] = e.time;
+    if (fresh) spoke_[{LifeOf(e), e.epoch, e.round}] = e.Clock();
     // What it set before it speaks can be part of what it says.
     if (const auto fell = fallen_.find(e.robot); fresh && fell != fallen_.end())
       fell_before_[{e.robot, e.epoch, e.round}] = fell->second;
@@ -199,7 +199,7 @@ class Check {
     last_acted_[e.robot] = std::max(last_acted_[e.robot], e.round);
     if (!Takes(e.epoch, LifeOf(e)))
       Say(Wrong::kTwoTeams, fmt::format("{} acts in epoch {}, in which it takes no part", Of(e), e.epoch));
-    if (e.time > e.until) Say(Wrong::kTooLate, fmt::format("{} acts when its lease is over", Of(e)));
+    if (e.Clock() > e.until) Say(Wrong::kTooLate, fmt::format("{} acts when its lease is over", Of(e)));
     // The answer was to what it said in the round before.
     const auto spoke = spoke_.find({LifeOf(e), e.epoch, e.round - 1});
     if (e.round == 0 || spoke == spoke_.end() ||
@@ -215,8 +215,8 @@ class Check {
     std::map<uint64_t, int64_t> first;  // by epoch: when somebody acted first
     for (const size_t i : acts_) {
       const Entry& e = record_.entries[i];
-      const auto [it, fresh] = first.emplace(e.epoch, e.time);
-      it->second = std::min(it->second, e.time);
+      const auto [it, fresh] = first.emplace(e.epoch, e.Clock());
+      it->second = std::min(it->second, e.Clock());
     }
     for (const size_t i : acts_) {
       const Entry& e = record_.entries[i];

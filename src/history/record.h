@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,7 +42,7 @@ constexpr size_t kNothing = SIZE_MAX;
 struct Entry {
   Kind kind = Kind::kStarted;
   int64_t time = 0;   ///< nanoseconds of the observer's clock
-  int64_t until = 0;  ///< kActed: when the permission ends, on the observer's clock
+  int64_t until = 0;  ///< kActed: when the permission ends, on the clock by which the robot runs
   uint32_t robot = 0;
   uint64_t incarnation = 0;
   uint64_t epoch = 0, round = 0;
@@ -53,6 +54,9 @@ struct Entry {
   /// kContributed: events that it leaves out because a function is not finished.
   std::vector<uint32_t> waits = {};
   bool skips = false;  ///< kContributed: it chose to do nothing, though it could
+  /// What the clock said by which the robot runs, if that is not the observer's: leases count on it.
+  std::optional<int64_t> clock = {};
+  int64_t Clock() const { return clock.value_or(time); }
 };
 
 /// Names one life of a robot.

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "platform/frames.h"
-#include "ros/ackermann_msgs.h"
+#include "ros/action_msgs.h"
+#include "ros/names.h"
 #include "ros/nav_msgs.h"
+#include "ros/rosgraph_msgs.h"
 #include "ros/sensor_msgs.h"
 #include "ros/tf2_msgs.h"
 
@@ -25,40 +28,79 @@ std::string BaseOf(const sim::Fleet& fleet, size_t robot) {
 }  // namespace
 
 Drivers::Drivers(const koord::Model& model, const sim::Fleet& fleet, const std::vector<Port>& ports,
-                 const std::vector<std::unique_ptr<Body>>& bodies)
-    : model_(model), fleet_(fleet), ports_(ports), bodies_(bodies), driven_(bodies.size()) {}
+                 const std::vector<std::unique_ptr<Body>>& bodies, bool simulated_time)
+    : model_(model),
+      fleet_(fleet),
+      ports_(ports),
+      bodies_(bodies),
+      simulated_time_(simulated_time),
+      autopilots_(bodies.size()),
+      goals_(bodies.size()),
+      driven_(bodies.size()) {}
 
 base::Result<bool> Drivers::Begin(dds::Participant& participant) {
   for (size_t r = 0; r < bodies_.size(); ++r) {
-    const size_t node = participant.AddNode({"/" + fleet_.robots[r].node_namespace, "driver"});
-    const size_t first = voices_.size();
-    // Odometry always: the usual tools show it, and `reached` may need it.
-    const Port place{0, PortRole::kPosition, std::vector<std::optional<sim::BodyPort>>(bodies_.size())};
-    std::vector<std::pair<const Port*, Topic>> said{{nullptr, *TopicOf(model_, fleet_, r, place)}};
-    for (const Port& port : ports_) {
-      if (sim::IsActuator(model_, port)) {
-        const auto listens = Listen(participant, node, r, port);
-        if (!listens.ok()) return listens.error();
-      } else if (const auto topic = TopicOf(model_, fleet_, r, port)) {
-        said.emplace_back(&port, *topic);
-      }
-    }
-    for (const auto& [port, topic] : said) {
-      const bool known = std::any_of(
-          voices_.begin() + static_cast<ptrdiff_t>(first), voices_.end(),
-          [&](const Voice& v) { return v.topic.name == topic.name && v.topic.carries == topic.carries; });
-      if (known) continue;
-      const ros::Qos qos = topic.carries == Carries::kScan ? ros::kSensorData : ros::kDefault;
-      auto publisher = participant.Publish(node, topic.name, TypeOf(topic.carries), qos);
-      if (!publisher.ok()) return publisher.error();
-      voices_.push_back({r, port, topic, std::move(publisher).value()});
-    }
-    if (transforms_ == nullptr) {
-      auto publisher = participant.Publish(node, "/tf", ros::tf2_msgs::TFMessage::kMessage, ros::kTransforms);
-      if (!publisher.ok()) return publisher.error();
-      transforms_ = std::move(publisher).value();
-    }
+    if (auto begun = Begin(participant, r); !begun.ok()) return begun;
   }
+  return true;
+}
+
+base::Result<bool> Drivers::Begin(dds::Participant& participant, size_t r) {
+  const size_t node = participant.AddNode({"/" + fleet_.robots[r].node_namespace, "driver"});
+  const auto publish = [&](const char* topic, const ros::Message& type, const ros::Qos& qos,
+                           std::unique_ptr<dds::Publisher>& publisher) -> base::Result<bool> {
+    if (publisher != nullptr) return true;
+    auto made = participant.Publish(node, topic, type, qos);
+    if (!made.ok()) return made.error();
+    publisher = std::move(made).value();
+    return true;
+  };
+  if (auto made = publish("/tf", ros::tf2_msgs::TFMessage::kMessage, ros::kTransforms, transforms_);
+      !made.ok())
+    return made;
+  if (simulated_time_) {
+    if (auto made = publish("/clock", ros::rosgraph_msgs::Clock::kMessage, {.depth = 1}, clock_); !made.ok())
+      return made;
+  }
+  // Odometry always: the usual tools show it, and `reached` may need it.
+  const Topic odometry = OdometryOf(fleet_, r);
+  if (odometry.carries == Carries::kOdometry) {
+    if (auto made = Speak(participant, node, r, nullptr, odometry); !made.ok()) return made;
+  }
+  std::string setpoints;
+  for (const Port& port : ports_) {
+    const auto topic = TopicOf(model_, fleet_, r, port);
+    if (!topic || !topic->library.empty()) continue;
+    if (topic->carries == Carries::kPx4Setpoint) setpoints = topic->name;
+    if (topic->carries == Carries::kPx4Setpoint || topic->carries == Carries::kPx4Odometry) continue;
+    const auto made = sim::IsActuator(model_, port) ? Listen(participant, node, r, port)
+                                                    : Speak(participant, node, r, &port, *topic);
+    if (!made.ok()) return made.error();
+  }
+  if (odometry.carries != Carries::kPx4Odometry) return true;
+  const auto flown = std::ranges::find_if(
+      fleet_.ros.ports, [](const auto& port) { return port.second.via == sim::PortVia::kPx4; });
+  if (setpoints.empty())
+    setpoints =
+        ros::FullName(fleet_.robots[r].node_namespace, flown->second.topic + "/in/trajectory_setpoint");
+  const auto system = static_cast<uint8_t>(flown->second.system > 0 ? flown->second.system : r + 1);
+  autopilots_[r] = std::make_unique<SimulatedAutopilot>(*bodies_[r], *fleet_.robots[r].origin, system);
+  return autopilots_[r]->Begin(participant, node, odometry.name, setpoints);
+}
+
+base::Result<bool> Drivers::Speak(dds::Participant& participant, size_t node, size_t robot, const Port* port,
+                                  const Topic& topic) {
+  const bool known = std::ranges::any_of(voices_, [&](const Voice& v) {
+    return v.topic.name == topic.name && v.topic.carries == topic.carries && v.topic.joint == topic.joint;
+  });
+  if (known) return true;
+  // What a robot wants to hear reliably, or from before, is said so.
+  ros::Qos qos = topic.carries == Carries::kScan ? ros::kSensorData : ros::kDefault;
+  qos.reliable = qos.reliable || topic.qos.reliable;
+  qos.transient_local = topic.qos.transient_local;
+  auto publisher = participant.Publish(node, topic.name, TypeOf(topic.carries), qos);
+  if (!publisher.ok()) return publisher.error();
+  voices_.push_back({robot, port, topic, std::move(publisher).value()});
   return true;
 }
 
@@ -66,77 +108,30 @@ base::Result<bool> Drivers::Listen(dds::Participant& participant, size_t node, s
                                    const Port& port) {
   const Topic topic = *TopicOf(model_, fleet_, robot, port);
   if (Drives(topic.carries)) driven_[robot].emplace();
-  auto subscription = participant.Subscribe(
-      node, topic.name, TypeOf(topic.carries), {.depth = 1},
-      [this, robot, &port, carries = topic.carries](std::string_view bytes, const dds::Received&) {
-        Hear(robot, port, carries, bytes);
-      });
+  auto subscription =
+      participant.Subscribe(node, topic.name, TypeOf(topic.carries), topic.qos,
+                            [this, robot, &port, topic](std::string_view bytes, const dds::Received&) {
+                              Hear(robot, port, topic, bytes);
+                            });
   if (!subscription.ok()) return subscription.error();
   subscriptions_.push_back(std::move(subscription).value());
   return true;
 }
 
-void Drivers::Hear(size_t robot, const Port& port, Carries carries, std::string_view bytes) {
+void Drivers::Hear(size_t robot, const Port& port, const Topic& topic, std::string_view bytes) {
   Order order{robot, &port, {}, {}, {}};
-  bool good = false;
-  switch (carries) {
-    case Carries::kPose: {
-      ros::geometry_msgs::PoseStamped m;
-      good = ros::Parse(bytes, m);
-      order.path = {PointOf(m.pose.position)};
-      break;
-    }
-    case Carries::kPath: {
-      ros::nav_msgs::Path m;
-      good = ros::Parse(bytes, m);
-      for (const auto& pose : m.poses) order.path.push_back(PointOf(pose.pose.position));
-      break;
-    }
-    case Carries::kBool: {
-      ros::std_msgs::Bool m;
-      good = ros::Parse(bytes, m);
-      order.numbers[0] = m.data ? 1 : 0;
-      break;
-    }
-    case Carries::kNumber: {
-      ros::std_msgs::Float64 m;
-      good = ros::Parse(bytes, m);
-      order.numbers[0] = m.data;
-      break;
-    }
-    case Carries::kPoint: {
-      ros::geometry_msgs::Point m;
-      good = ros::Parse(bytes, m);
-      order.numbers = PointOf(m);
-      break;
-    }
-    case Carries::kTwist: {
-      ros::geometry_msgs::Twist m;
-      good = ros::Parse(bytes, m);
-      order.twist = {m.linear.x, m.linear.y, m.angular.z, 0};
-      break;
-    }
-    case Carries::kTwistStamped: {
-      ros::geometry_msgs::TwistStamped m;
-      good = ros::Parse(bytes, m);
-      order.twist = {m.twist.linear.x, m.twist.linear.y, m.twist.angular.z, 0};
-      break;
-    }
-    case Carries::kAckermann: {
-      ros::ackermann_msgs::AckermannDriveStamped m;
-      good = ros::Parse(bytes, m);
-      order.twist = {m.drive.speed, 0, 0, m.drive.steering_angle};
-      break;
-    }
-    case Carries::kOdometry:
-    case Carries::kScan:
-      break;
+  if (Drives(topic.carries)) {
+    order.twist = TwistIn(topic.carries, bytes);
+    if (!order.twist) return;
+  } else if (topic.carries == Carries::kPose || topic.carries == Carries::kPath) {
+    auto path = PathIn(topic.carries, bytes);
+    if (!path) return;
+    order.path = std::move(*path);
+  } else {
+    const auto numbers = NumbersIn(topic, bytes);
+    if (!numbers || !Finite(*numbers)) return;
+    order.numbers = *numbers;
   }
-  if (order.twist) {
-    order.numbers = {order.twist->forward, order.twist->left, order.twist->turn};
-    good = good && std::isfinite(order.twist->steer);
-  }
-  if (!good || !Finite(order.numbers) || !std::ranges::all_of(order.path, Finite)) return;
   const std::lock_guard lock(mutex_);
   orders_.push_back(std::move(order));
 }
@@ -153,8 +148,10 @@ void Drivers::Obey() {
       driven_[order.robot] = Driven{*order.twist, 0};
     } else if (const auto& own = order.port->own[order.robot]) {
       body.WritePort(*own, std::span(order.numbers).first(own->kind == sim::BodyPort::Kind::kPoint ? 3 : 1));
-    } else if (order.path != body.path()) {
-      body.Follow(std::move(order.path));
+    } else {
+      // Each order is a goal of its own, and what it replaces is over (action_msgs/GoalStatus: executing).
+      goals_[order.robot] = {goals_[order.robot].number + 1, stamp_, 2};
+      if (order.path != body.path()) body.Follow(std::move(order.path));
     }
   }
 }
@@ -168,11 +165,24 @@ std::optional<size_t> Drivers::Step(double dt) {
       driven->age += dt;
       good = bodies_[r]->Drive(driven->twist, dt, fleet_.integrator);
     } else {
+      if (autopilots_[r] != nullptr) autopilots_[r]->Step(dt);
       good = bodies_[r]->Step(dt, fleet_.integrator);
     }
     if (!good) return r;
   }
   return std::nullopt;
+}
+
+void Drivers::TellTime(double t) {
+  if (!simulated_time_) {
+    stamp_ = WallTime();
+    return;
+  }
+  // Nobody takes a clock at zero for one that goes.
+  stamp_ = 1'000'000'000 + static_cast<int64_t>(std::llround(t * 1e9));
+  ros::rosgraph_msgs::Clock m;
+  m.clock = StampOf(stamp_);
+  (void)clock_->Publish(m).ok();
 }
 
 void Drivers::Tell(const std::vector<sim::Rays>& scans) {
@@ -185,22 +195,19 @@ void Drivers::Tell(const std::vector<sim::Rays>& scans) {
       case Carries::kScan:
         if (!scans.empty()) Scan(voice, scans[voice.robot]);
         break;
-      case Carries::kBool:
-      case Carries::kNumber:
-      case Carries::kPoint:
+      case Carries::kGoalStatus:
+        Status(voice);
+        break;
+      default:
         Other(voice);
-        break;
-      case Carries::kPose:
-      case Carries::kPath:
-      case Carries::kTwist:
-      case Carries::kTwistStamped:
-      case Carries::kAckermann:
-        break;
     }
+  }
+  for (const auto& autopilot : autopilots_) {
+    if (autopilot != nullptr) autopilot->Tell(stamp_);
   }
   for (size_t r = 0; r < bodies_.size(); ++r) {
     auto& t = transforms.transforms.emplace_back();
-    t.header = HeaderOf(fleet_.ros.frame);
+    t.header = Header(fleet_.ros.frame);
     t.child_frame_id = BaseOf(fleet_, r);
     const Point p = bodies_[r]->position();
     const auto q = bodies_[r]->rotation();
@@ -218,7 +225,7 @@ void Drivers::Tell(const std::vector<sim::Rays>& scans) {
 void Drivers::Odometry(const Voice& voice) {
   const Body& body = *bodies_[voice.robot];
   ros::nav_msgs::Odometry m;
-  m.header = HeaderOf(fleet_.ros.frame);
+  m.header = Header(fleet_.ros.frame);
   m.child_frame_id = BaseOf(fleet_, voice.robot);
   const Point p = body.position(), v = body.velocity();
   const auto q = body.rotation();
@@ -243,7 +250,7 @@ void Drivers::Odometry(const Voice& voice) {
 void Drivers::Scan(const Voice& voice, const sim::Rays& rays) {
   if (rays.distances.empty()) return;
   ros::sensor_msgs::LaserScan m;
-  m.header = HeaderOf(BaseOf(fleet_, voice.robot));
+  m.header = Header(BaseOf(fleet_, voice.robot));
   const double first = rays.first - bodies_[voice.robot]->yaw();
   m.angle_min = static_cast<float>(first);
   m.angle_increment = static_cast<float>(rays.step);
@@ -254,28 +261,27 @@ void Drivers::Scan(const Voice& voice, const sim::Rays& rays) {
   (void)voice.publisher->Publish(m).ok();
 }
 
+void Drivers::Status(const Voice& voice) {
+  constexpr int8_t kSucceeded = 4;
+  Goal& goal = goals_[voice.robot];
+  if (goal.number == 0) return;
+  if (bodies_[voice.robot]->reached()) goal.status = kSucceeded;
+  ros::action_msgs::GoalStatusArray m;
+  auto& status = m.status_list.emplace_back();
+  std::memcpy(status.goal_info.goal_id.uuid.data(), &goal.number, sizeof goal.number);
+  status.goal_info.stamp = StampOf(goal.accepted);
+  status.status = goal.status;
+  (void)voice.publisher->Publish(m).ok();
+}
+
 void Drivers::Other(const Voice& voice) {
   const Body& body = *bodies_[voice.robot];
-  std::array<double, 3> values{};
+  Numbers values{};
   if (const auto& own = voice.port->own[voice.robot])
     body.ReadPort(*own, std::span(values).first(own->kind == sim::BodyPort::Kind::kPoint ? 3 : 1));
   else if (voice.port->role == PortRole::kReached)
     values[0] = body.reached() ? 1 : 0;
-  if (voice.topic.carries == Carries::kBool) {
-    ros::std_msgs::Bool m;
-    m.data = values[0] != 0;
-    (void)voice.publisher->Publish(m).ok();
-  } else if (voice.topic.carries == Carries::kNumber) {
-    ros::std_msgs::Float64 m;
-    m.data = values[0];
-    (void)voice.publisher->Publish(m).ok();
-  } else {
-    ros::geometry_msgs::Point m;
-    m.x = values[0];
-    m.y = values[1];
-    m.z = values[2];
-    (void)voice.publisher->Publish(m).ok();
-  }
+  (void)voice.publisher->Write(MessageOf(voice.topic, values, Header(""))).ok();
 }
 
 }  // namespace rondo::platform

@@ -1,48 +1,48 @@
 #include "platform/orders.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
-#include "ros/ackermann_msgs.h"
-#include "ros/nav_msgs.h"
 #include "transport/mailbox.h"
 
 namespace rondo::platform {
 
 using koord::semantics::ToFloat;
 using sim::Point;
+using transport::Seconds;
 
 namespace {
 
 using std::chrono::milliseconds;
 
-// `goal` and `path` are kept by drivers for as long as they like.
-constexpr ros::Qos kOrders{.depth = 1};
 constexpr milliseconds kControl(20);  // the period of controllers
-
-ros::geometry_msgs::Pose PoseAt(const Point& p) {
-  ros::geometry_msgs::Pose pose;
-  pose.position.x = p[0];
-  pose.position.y = p[1];
-  pose.position.z = p[2];
-  pose.orientation.w = 1;
-  return pose;
-}
 
 }  // namespace
 
 Orders::Orders(const koord::Model& model, const sim::Fleet& fleet, const std::vector<sim::Port>& ports,
-               size_t robot, Senses& senses)
-    : model_(model), fleet_(fleet), senses_(senses) {
+               size_t robot, Senses& senses, const Clock& clock)
+    : model_(model), fleet_(fleet), robot_(robot), senses_(senses), clock_(clock) {
   for (const sim::Port& port : ports) {
     if (!sim::IsActuator(model, port)) continue;
+    const Topic topic = *TopicOf(model, fleet, robot, port);
+    const auto same = std::ranges::find_if(lines_, [&](const Line& l) {
+      return topic.carries == Carries::kJointTrajectory && l.topic.carries == topic.carries &&
+             l.topic.name == topic.name;
+    });
+    const auto sender = static_cast<size_t>(same - lines_.begin());
     Line& line = lines_.emplace_back();
     line.port = &port;
-    line.topic = *TopicOf(model, fleet, robot, port);
-    if (!Drives(line.topic.carries)) continue;
-    drives_ = true;
-    line.body = fleet.robots[robot].make();
-    line.body->Place(fleet.robots[robot].position, fleet.robots[robot].yaw);
+    line.topic = topic;
+    line.sender = sender;
+    if (Drives(topic.carries)) {
+      line.body = fleet.robots[robot].make();
+      line.body->Place(fleet.robots[robot].position, fleet.robots[robot].yaw);
+    } else if (topic.carries == Carries::kPx4Setpoint) {
+      line.offboard = std::make_unique<Offboard>(clock, *fleet.robots[robot].origin, topic.system);
+    }
+    ticks_ = ticks_ || line.ticks();
   }
 }
 
@@ -57,11 +57,25 @@ Orders::~Orders() {
 
 base::Result<bool> Orders::Begin(dds::Participant& participant, size_t node) {
   for (Line& line : lines_) {
-    auto publisher = participant.Publish(node, line.topic.name, TypeOf(line.topic.carries), kOrders);
-    if (!publisher.ok()) return publisher.error();
-    line.publisher = std::move(publisher).value();
+    if (auto begun = Begin(participant, node, line); !begun.ok()) return begun;
   }
   thread_ = std::thread([this] { Run(); });
+  return true;
+}
+
+base::Result<bool> Orders::Begin(dds::Participant& participant, size_t node, Line& line) {
+  const Topic& topic = line.topic;
+  if (line.offboard != nullptr) return line.offboard->Begin(participant, node, topic.name);
+  if (!topic.library.empty()) {
+    auto actuator = MakeActuator(topic.library, {fleet_.robots[robot_].name, topic.port, topic.options});
+    if (!actuator.ok()) return actuator.error();
+    line.adapted = std::move(actuator).value();
+    return true;
+  }
+  if (&lines_[line.sender] != &line) return true;
+  auto publisher = participant.Publish(node, topic.name, TypeOf(topic.carries), topic.qos);
+  if (!publisher.ok()) return publisher.error();
+  line.publisher = std::move(publisher).value();
   return true;
 }
 
@@ -98,6 +112,7 @@ void Orders::Give(size_t variable, const Heap& heap, const Word* at, bool always
     } else {
       line->numbers[0] = ToFloat(*at);
     }
+    line->told = true;
     line->due = true;
     line->always = always;
   }
@@ -108,11 +123,18 @@ void Orders::Stay(const Point& position) {
   std::unique_lock lock(mutex_);
   for (Line& line : lines_) {
     if (line.port->role != sim::PortRole::kPath && line.port->role != sim::PortRole::kTarget) continue;
+    // A drone on the ground that was told nothing stays there.
+    if (line.offboard != nullptr && !line.told) continue;
     line.path = {position};
     line.due = line.always = true;
   }
   changed_.notify_all();
   sent_.wait_for(lock, milliseconds(500), [&] { return std::ranges::none_of(lines_, &Line::due); });
+}
+
+std::string Orders::TakeProblem() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(problem_, {});
 }
 
 uint64_t Orders::late() const {
@@ -125,107 +147,94 @@ void Orders::Run() {
   std::unique_lock lock(mutex_);
   const auto wanted = [this] { return ended_ || std::ranges::any_of(lines_, &Line::due); };
   while (true) {
-    changed_.wait_for(lock, drives_ ? kControl : milliseconds(100), wanted);
+    changed_.wait_for(lock, ticks_ ? kControl : milliseconds(100), wanted);
     const bool last = ended_;
+    const Time now = clock_.Now();
+    period_ = clock_.simulated() ? std::min(Seconds(now - ticked_), 0.1)
+                                 : std::chrono::duration<double>(kControl).count();
+    ticked_ = now;
     for (Line& line : lines_) {
       const bool due = std::exchange(line.due, false);
-      const bool again = line.body == nullptr && line.unheard && line.publisher->matched() > 0;
-      const bool in_time = line.always || transport::BootTime() <= until_;
+      const dds::Publisher* publisher = lines_[line.sender].publisher.get();
+      const bool again = publisher != nullptr && !line.ticks() && line.unheard && publisher->matched() > 0;
+      const bool in_time = line.always || now <= until_;
       if (due && !in_time) ++late_;
+      // What is sent of one joint is sent of all.
+      for (Line& other : lines_) other.due = other.due && (!due || !in_time || other.sender != line.sender);
       if ((due || again) && in_time) {
         line.said = line.path;
         line.said_numbers = line.numbers;
-        line.unheard = line.publisher->matched() == 0;
-      } else if (line.body == nullptr) {
+        line.unheard = publisher != nullptr && publisher->matched() == 0;
+      } else if (!line.ticks()) {
         continue;
       }
       lock.unlock();
-      if (line.body != nullptr)
-        Drive(line, due && in_time, last);
+      if (line.ticks())
+        Tick(line, due && in_time, last);
       else
         Send(line);
       lock.lock();
     }
     sent_.notify_all();
-    if (last) return;
+    if (last) break;
+  }
+  for (const Line& line : lines_) {
+    if (line.adapted != nullptr) line.adapted->Safe();
   }
 }
 
 // What was told in time holds until something else is told, as for drivers that have the controller themselves.
-void Orders::Drive(Line& line, bool fresh, bool last) {
+void Orders::Tick(Line& line, bool fresh, bool last) {
+  if (line.offboard != nullptr) {
+    if (!line.said.empty()) line.offboard->Fly(line.said.front(), senses_.autopilot());
+    return;
+  }
   if (fresh) line.body->Follow(line.said);
-  const auto place = senses_.place();
-  const bool blind = !place || !senses_.Unusable(transport::BootTime()).empty();
-  if (last || blind) return Publish(line, {});
-  line.body->Put(place->position, place->yaw);
-  line.body->Decide(std::chrono::duration<double>(kControl).count());
-  Publish(line, line.body->Told().value_or(sim::Twist()));
+  // While a clock that is simulated stands still, so do controllers.
+  if (last || period_ > 0) Drive(line, last);
 }
 
-void Orders::Publish(const Line& line, const sim::Twist& twist) const {
-  if (line.topic.carries == Carries::kAckermann) {
-    ros::ackermann_msgs::AckermannDriveStamped m;
-    m.header = HeaderOf("");
-    m.drive.speed = static_cast<float>(twist.forward);
-    m.drive.steering_angle = static_cast<float>(twist.steer);
-    (void)line.publisher->Publish(m).ok();
-    return;
+void Orders::Drive(Line& line, bool last) {
+  const auto place = senses_.place();
+  const bool blind = !place || !senses_.Unusable().empty();
+  sim::Twist twist;
+  if (!last && !blind) {
+    line.body->Put(place->position, place->yaw);
+    line.body->Decide(period_);
+    twist = line.body->Told().value_or(sim::Twist());
   }
-  ros::geometry_msgs::TwistStamped m;
-  m.twist.linear.x = twist.forward;
-  m.twist.linear.y = twist.left;
-  m.twist.angular.z = twist.turn;
-  if (line.topic.carries == Carries::kTwist) {
-    (void)line.publisher->Publish(m.twist).ok();
-    return;
-  }
-  m.header = HeaderOf("");
-  (void)line.publisher->Publish(m).ok();
+  (void)line.publisher->Write(MessageOf(line.topic.carries, twist, HeaderOf("", clock_.Stamp()))).ok();
 }
+
+ros::std_msgs::Header Orders::Header() const { return HeaderOf(fleet_.ros.frame, clock_.Stamp()); }
 
 // What cannot be sent is lost, like anything on the way.
-void Orders::Send(const Line& line) const {
-  switch (line.topic.carries) {
-    case Carries::kPose: {
-      ros::geometry_msgs::PoseStamped m;
-      m.header = HeaderOf(fleet_.ros.frame);
-      m.pose = PoseAt(line.said.front());
-      (void)line.publisher->Publish(m).ok();
-      return;
+void Orders::Send(const Line& line) {
+  const Topic& topic = line.topic;
+  const bool goes = topic.carries == Carries::kPose || topic.carries == Carries::kPath;
+  if (line.adapted != nullptr) {
+    const size_t parts = topic.carries == Carries::kPoint ? 3 : 1;
+    try {
+      line.adapted->Write({line.said_numbers.begin(), line.said_numbers.begin() + parts});
+    } catch (const std::exception& e) {
+      const std::lock_guard lock(mutex_);
+      problem_ = fmt::format("`{}`: {}: {}", topic.port, topic.name, e.what());
     }
-    case Carries::kPath: {
-      ros::nav_msgs::Path m;
-      m.header = HeaderOf(fleet_.ros.frame);
-      for (const Point& p : line.said) {
-        auto& pose = m.poses.emplace_back();
-        pose.header = m.header;
-        pose.pose = PoseAt(p);
+  } else if (topic.carries == Carries::kJointTrajectory) {
+    // A driver that is told of some joints may let the others be where they are.
+    std::vector<JointGoal> goals;
+    {
+      const std::lock_guard lock(mutex_);
+      for (const Line& other : lines_) {
+        if (other.sender == line.sender && other.told)
+          goals.push_back({other.topic.joint, other.numbers[0], other.topic.within});
       }
-      (void)line.publisher->Publish(m).ok();
-      return;
     }
-    case Carries::kBool: {
-      ros::std_msgs::Bool m;
-      m.data = line.said_numbers[0] != 0;
-      (void)line.publisher->Publish(m).ok();
-      return;
-    }
-    case Carries::kNumber: {
-      ros::std_msgs::Float64 m;
-      m.data = line.said_numbers[0];
-      (void)line.publisher->Publish(m).ok();
-      return;
-    }
-    case Carries::kPoint: {
-      (void)line.publisher->Publish(PoseAt(line.said_numbers).position).ok();
-      return;
-    }
-    case Carries::kOdometry:
-    case Carries::kScan:
-    case Carries::kTwist:
-    case Carries::kTwistStamped:
-    case Carries::kAckermann:
-      return;
+    (void)lines_[line.sender].publisher->Write(MessageOf(goals, Header())).ok();
+  } else if (goes) {
+    (void)line.publisher->Write(MessageOf(topic.carries, line.said, Header())).ok();
+  } else {
+    (void)line.publisher->Write(MessageOf(topic, line.said_numbers, Header())).ok();
   }
 }
 

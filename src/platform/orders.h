@@ -9,9 +9,9 @@
 
 #include "dds/participant.h"
 #include "koord/node/cells.h"
+#include "platform/messages.h"
+#include "platform/offboard.h"
 #include "platform/senses.h"
-#include "platform/topics.h"
-#include "runtime/rounds/settings.h"
 
 namespace rondo::platform {
 
@@ -25,7 +25,7 @@ class Orders {
   /// @param ports  of the program; outlives this, as do the others.
   /// @param senses  of the same robot.
   Orders(const koord::Model& model, const sim::Fleet& fleet, const std::vector<sim::Port>& ports,
-         size_t robot, Senses& senses);
+         size_t robot, Senses& senses, const Clock& clock);
   Orders(const Orders&) = delete;
   Orders& operator=(const Orders&) = delete;
   ~Orders();
@@ -43,6 +43,8 @@ class Orders {
   /// Puts the path that a robot is told by that actuator into `path`; without points, it is to stay. Returns false if the
   /// actuator is none that makes it go somewhere.
   bool PathOf(size_t variable, const Heap& heap, const Word* at, std::vector<sim::Point>& path) const;
+  /// Returns what an adapter said last when it could not do what it was told, since the last call; empty: nothing.
+  std::string TakeProblem();
   /// Returns how many orders came too late to be sent.
   uint64_t late() const;
 
@@ -50,31 +52,43 @@ class Orders {
   struct Line {
     const sim::Port* port;
     Topic topic;
+    size_t sender;  // the line whose publisher sends it: its own, but of joints of one topic the first
     std::unique_ptr<dds::Publisher> publisher;
-    std::vector<sim::Point> path;     // of kPose one point
-    std::array<double, 3> numbers{};  // of others
-    bool due = false;                 // to be sent
-    bool unheard = false;             // sent, and nobody was there
-    bool always = false;              // whatever time it is
+    std::unique_ptr<adapter::Actuator> adapted;
+    std::vector<sim::Point> path;  // of kPose one point
+    Numbers numbers{};             // of others
+    bool told = false;             // something, ever
+    bool due = false;              // to be sent
+    bool unheard = false;          // sent, and nobody was there
+    bool always = false;           // whatever time it is
     // Only the thread that sends uses what follows.
     std::vector<sim::Point> said;  // as `path`, `numbers`, of what is being sent
-    std::array<double, 3> said_numbers{};
-    std::unique_ptr<sim::Body> body;  // its controller, of what is driven
+    Numbers said_numbers{};
+    std::unique_ptr<sim::Body> body;     // its controller, of what is driven
+    std::unique_ptr<Offboard> offboard;  // of what is flown by an autopilot
+    bool ticks() const { return body != nullptr || offboard != nullptr; }
   };
+  base::Result<bool> Begin(dds::Participant& participant, size_t node, Line& line);
   void Run();
-  void Send(const Line& line) const;
-  void Drive(Line& line, bool fresh, bool last);
-  void Publish(const Line& line, const sim::Twist& twist) const;
+  void Send(const Line& line);
+  void Tick(Line& line, bool fresh, bool last);
+  void Drive(Line& line, bool last);
+  ros::std_msgs::Header Header() const;
 
   const koord::Model& model_;
   const sim::Fleet& fleet_;
+  const size_t robot_;
   Senses& senses_;
-  bool drives_ = false;
+  const Clock& clock_;
+  bool ticks_ = false;
+  Time ticked_ = 0;
+  double period_ = 0;  // of the controllers, now
   std::vector<Line> lines_;
   mutable std::mutex mutex_;
   std::condition_variable changed_, sent_;
   Time until_ = 0;
   uint64_t late_ = 0;
+  std::string problem_;
   bool ended_ = false;
   std::thread thread_;
 };

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "platform/messages.h"
+#include "ros/action_msgs.h"
 #include "transport/mailbox.h"
 
 namespace rondo::platform {
@@ -13,7 +15,6 @@ using koord::semantics::FromFloat;
 using sim::Point;
 using sim::Port;
 using sim::PortRole;
-using transport::BootTime;
 using transport::Seconds;
 
 namespace {
@@ -21,75 +22,120 @@ namespace {
 constexpr size_t kMostRays = 100'000;
 
 bool IsSensor(const koord::Model& model, const Port& port) { return !sim::IsActuator(model, port); }
+bool SaysPlace(const Topic& topic) {
+  return topic.carries == Carries::kOdometry || topic.carries == Carries::kPx4Odometry;
+}
 
 }  // namespace
 
-Senses::Senses(const koord::Model& model, const sim::Fleet& fleet, const std::vector<Port>& ports,
-               size_t robot, const sim::Body& body, Heap& heap)
-    : model_(model),
-      fleet_(fleet),
-      ports_(ports),
-      robot_(robot),
-      heap_(heap),
-      tolerance_{body.Value("tolerance"), body.Value("waypoint_tolerance"), body.Value("dwell"),
-                 body.flies()},
-      of_port_(ports.size()) {
-  way_.Begin({fleet.robots[robot].position}, tolerance_);
+std::vector<Topic> SensedTopics(const koord::Model& model, const sim::Fleet& fleet,
+                                const std::vector<Port>& ports, size_t robot,
+                                std::vector<std::optional<size_t>>& of_port) {
+  std::vector<Topic> topics;
+  of_port.assign(ports.size(), std::nullopt);
   for (size_t p = 0; p < ports.size(); ++p) {
     if (!IsSensor(model, ports[p])) continue;
     const auto topic = TopicOf(model, fleet, robot, ports[p]);
     if (!topic) continue;
-    const auto same = std::ranges::find_if(heard_, [&](const Heard& h) {
-      return h.topic.name == topic->name && h.topic.carries == topic->carries;
+    // Libraries are asked for each port by itself.
+    const auto same = std::ranges::find_if(topics, [&](const Topic& t) {
+      return t.name == topic->name && t.carries == topic->carries && t.joint == topic->joint &&
+             topic->library.empty();
     });
-    of_port_[p] = static_cast<size_t>(same - heard_.begin());
-    if (same == heard_.end())
-      heard_.push_back({*topic, std::nullopt, {}, {}});
+    of_port[p] = static_cast<size_t>(same - topics.begin());
+    if (same == topics.end())
+      topics.push_back(*topic);
     else
-      same->topic.max_age = std::min(same->topic.max_age, topic->max_age);
+      same->max_age = std::min(same->max_age, topic->max_age);
   }
   // Who asks whether it is where it was told to go has to know where it is; so has a scan.
   const bool needs_place = std::ranges::any_of(ports, [&](const Port& port) {
     return port.role == PortRole::kScans ||
            (port.role == PortRole::kReached && !TopicOf(model, fleet, robot, port));
   });
-  const bool has_place =
-      std::ranges::any_of(heard_, [](const Heard& h) { return h.topic.carries == Carries::kOdometry; });
-  if (!needs_place || has_place) return;
-  Port psn{0, PortRole::kPosition, std::vector<std::optional<sim::BodyPort>>(fleet.robots.size())};
-  Topic topic = *TopicOf(model, fleet, robot, psn);
-  topic.port = "where it is";
-  heard_.push_back({topic, std::nullopt, {}, {}});
+  const bool has_place = std::ranges::any_of(topics, &SaysPlace);
+  if (needs_place && !has_place) topics.push_back(OdometryOf(fleet, robot));
+  return topics;
+}
+
+Senses::Senses(const koord::Model& model, const sim::Fleet& fleet, const std::vector<Port>& ports,
+               size_t robot, const sim::Body& body, Heap& heap, const Clock& clock)
+    : model_(model),
+      fleet_(fleet),
+      ports_(ports),
+      robot_(robot),
+      heap_(heap),
+      clock_(clock),
+      tolerance_{body.Value("tolerance"), body.Value("waypoint_tolerance"), body.Value("dwell"),
+                 body.flies()} {
+  way_.Begin({fleet.robots[robot].position}, tolerance_);
+  for (Topic& topic : SensedTopics(model, fleet, ports, robot, of_port_))
+    heard_.emplace_back().topic = std::move(topic);
+}
+
+base::Result<dds::Subscription*> Senses::Listen(dds::Participant& participant, size_t node,
+                                                const std::string& topic, const ros::Message& type,
+                                                const ros::Qos& qos, dds::Receive receive) {
+  auto subscription = participant.Subscribe(node, topic, type, qos, std::move(receive));
+  if (!subscription.ok()) return subscription.error();
+  subscriptions_.push_back(std::move(subscription).value());
+  return subscriptions_.back().get();
 }
 
 base::Result<bool> Senses::Begin(dds::Participant& participant, size_t node) {
   for (size_t i = 0; i < heard_.size(); ++i) {
     const Topic& topic = heard_[i].topic;
-    auto subscription =
-        participant.Subscribe(node, topic.name, TypeOf(topic.carries), ros::kSensorData,
-                              [this, i](std::string_view bytes, const dds::Received&) { Hear(i, bytes); });
+    if (!topic.library.empty()) {
+      auto sensor = MakeSensor(topic.library, {fleet_.robots[robot_].name, topic.port, topic.options});
+      if (!sensor.ok()) return sensor.error();
+      heard_[i].adapted = std::make_unique<AdaptedSensor>(std::move(sensor).value(),
+                                                          topic.carries == Carries::kPoint ? 3 : 1, clock_);
+      continue;
+    }
+    const auto subscription =
+        Listen(participant, node, topic.name, TypeOf(topic.carries), topic.qos,
+               [this, i](std::string_view bytes, const dds::Received&) { Hear(i, bytes); });
     if (!subscription.ok()) return subscription.error();
-    subscriptions_.push_back(std::move(subscription).value());
+    heard_[i].subscription = subscription.value();
+    if (topic.carries != Carries::kPx4Odometry || pilot_) continue;
+    if (auto begun = ListenToPilot(participant, node, topic.name); !begun.ok()) return begun;
   }
   for (const bool fixed : {false, true}) {
     ros::Qos qos = ros::kTransforms;
     qos.transient_local = fixed;
-    auto subscription =
-        participant.Subscribe(node, fixed ? "/tf_static" : "/tf", ros::tf2_msgs::TFMessage::kMessage, qos,
-                              [this](std::string_view bytes, const dds::Received&) {
-                                ros::tf2_msgs::TFMessage message;
-                                if (!ros::Parse(bytes, message)) return;
-                                const std::lock_guard lock(mutex_);
-                                frames_.Hear(message);
-                              });
+    const auto subscription =
+        Listen(participant, node, fixed ? "/tf_static" : "/tf", ros::tf2_msgs::TFMessage::kMessage, qos,
+               [this](std::string_view bytes, const dds::Received&) {
+                 ros::tf2_msgs::TFMessage message;
+                 if (!ros::Parse(bytes, message)) return;
+                 const std::lock_guard lock(mutex_);
+                 frames_.Hear(message);
+               });
     if (!subscription.ok()) return subscription.error();
-    subscriptions_.push_back(std::move(subscription).value());
   }
   return true;
 }
 
+base::Result<bool> Senses::ListenToPilot(dds::Participant& participant, size_t node,
+                                         const std::string& odometry) {
+  const auto listens =
+      Listen(participant, node, Beside(odometry, kControlMode), ros::px4_msgs::VehicleControlMode::kMessage,
+             {.reliable = false, .depth = 1}, [this](std::string_view bytes, const dds::Received&) {
+               ros::px4_msgs::VehicleControlMode m;
+               if (ros::Parse(bytes, m)) HearPilot({m.flag_armed, m.flag_control_offboard_enabled});
+             });
+  if (!listens.ok()) return listens.error();
+  return true;
+}
+
+void Senses::HearPilot(const Autopilot& pilot) {
+  const std::lock_guard lock(mutex_);
+  pilot_ = pilot;
+  flew_ = flew_ || (pilot.armed && pilot.offboard);
+}
+
 void Senses::Hear(size_t number, std::string_view bytes) {
-  const Time now = BootTime();
+  const Time now = clock_.Now();
   const auto with = [&](auto message, const auto& take) {
     const bool good = ros::Parse(bytes, message);
     const std::lock_guard lock(mutex_);
@@ -98,54 +144,46 @@ void Senses::Hear(size_t number, std::string_view bytes) {
     heard.wrong = good ? "" : "what it says cannot be read";
     if (good) take(heard, message);
   };
-  const auto numbers = [](Heard& heard, std::array<double, 3> values) {
-    heard.numbers = values;
-    if (!Finite(values)) heard.wrong = "it says a number that is not finite";
-  };
-  switch (heard_[number].topic.carries) {
+  const Topic& topic = heard_[number].topic;
+  switch (topic.carries) {
     case Carries::kOdometry:
-      return with(ros::nav_msgs::Odometry(),
-                  [&](Heard& heard, const auto& m) { HearOdometry(heard, m, now); });
+      return with(ros::nav_msgs::Odometry(), [&](Heard& heard, const auto& m) {
+        HearPlace(heard, PlaceOf(m, frames_, fleet_.ros.frame, fleet_.robots[robot_].origin), now);
+      });
+    case Carries::kPx4Odometry:
+      return with(ros::px4_msgs::VehicleOdometry(), [&](Heard& heard, const auto& m) {
+        HearPlace(heard, PlaceOf(m, fleet_.robots[robot_].origin.value_or(sim::Origin())), now);
+      });
     case Carries::kScan:
       return with(ros::sensor_msgs::LaserScan(),
                   [&](Heard& heard, const auto& m) { HearScan(heard, m, now); });
-    case Carries::kBool:
-      return with(ros::std_msgs::Bool(), [&](Heard& h, const auto& m) {
-        numbers(h, {m.data ? 1.0 : 0.0, 0, 0});
-      });
-    case Carries::kNumber:
-      return with(ros::std_msgs::Float64(), [&](Heard& h, const auto& m) { numbers(h, {m.data, 0, 0}); });
-    case Carries::kPoint:
-      return with(ros::geometry_msgs::Point(), [&](Heard& h, const auto& m) { numbers(h, PointOf(m)); });
-    case Carries::kPose:
-    case Carries::kPath:
-    case Carries::kTwist:
-    case Carries::kTwistStamped:
-    case Carries::kAckermann:
-      return;
+    case Carries::kGoalStatus:
+      return with(ros::action_msgs::GoalStatusArray(), [&](Heard&, const auto& m) { goals_.Hear(m); });
+    default:
+      break;
   }
+  const auto numbers = NumbersIn(topic, bytes);
+  // Others may say on the same topic where other joints are.
+  if (!numbers && topic.carries == Carries::kJointState) return;
+  const std::lock_guard lock(mutex_);
+  Heard& heard = heard_[number];
+  heard.at = now;
+  heard.wrong = numbers ? "" : "what it says cannot be read";
+  heard.numbers = numbers.value_or(heard.numbers);
+  if (!Finite(heard.numbers)) heard.wrong = "it says a number that is not finite";
 }
 
-void Senses::HearOdometry(Heard& heard, const ros::nav_msgs::Odometry& m, Time now) {
-  const auto transform = frames_.Lookup(fleet_.ros.frame, m.header.frame_id);
-  if (!transform) {
-    heard.wrong = fmt::format("it is told in frame `{}`, and nobody says on /tf where that is in `{}`",
-                              m.header.frame_id, fleet_.ros.frame);
+void Senses::HearPlace(Heard& heard, const std::variant<Place, std::string>& place, Time now) {
+  if (const auto* why = std::get_if<std::string>(&place)) {
+    heard.wrong = *why;
     return;
   }
-  const ros::geometry_msgs::Pose pose = Applied(*transform, m.pose.pose);
-  // The velocity is told in the frame of the robot (REP-105, nav_msgs/Odometry).
-  const auto velocity = Rotated(pose.orientation, m.twist.twist.linear);
-  const Place place{PointOf(pose.position), {velocity.x, velocity.y, velocity.z}, YawOf(pose.orientation)};
-  if (!Finite(place.position) || !Finite(place.velocity) || !std::isfinite(place.yaw)) {
-    heard.wrong = "it says a number that is not finite";
-    return;
-  }
+  const Place& there = std::get<Place>(place);
   if (place_) {
-    way_.Next(place.position);
-    way_.Pass(place.position, Seconds(now - place_at_));
+    way_.Next(there.position);
+    way_.Pass(there.position, Seconds(now - place_at_));
   }
-  place_ = place;
+  place_ = there;
   place_at_ = now;
 }
 
@@ -157,8 +195,7 @@ double Senses::DistanceOf(float range, const ros::sensor_msgs::LaserScan& m) {
 }
 
 void Senses::HearScan(Heard& heard, const ros::sensor_msgs::LaserScan& m, Time now) {
-  const auto odometry =
-      std::ranges::find_if(heard_, [](const Heard& h) { return h.topic.carries == Carries::kOdometry; });
+  const auto odometry = std::ranges::find_if(heard_, [](const Heard& h) { return SaysPlace(h.topic); });
   if (!place_ || Seconds(now - place_at_) > odometry->topic.max_age) {
     heard.wrong = "it cannot be placed: nobody has said lately where the robot is";
     return;
@@ -184,20 +221,35 @@ void Senses::HearScan(Heard& heard, const ros::sensor_msgs::LaserScan& m, Time n
   seen_.push_back(std::move(seen));
 }
 
-std::string Senses::Unusable(Time now) {
-  const std::lock_guard lock(mutex_);
-  for (const Heard& heard : heard_) {
-    const Topic& topic = heard.topic;
-    if (!heard.at) return fmt::format("`{}`: nothing has come on {} yet", topic.port, topic.name);
-    if (Seconds(now - *heard.at) > topic.max_age)
-      return fmt::format("`{}`: nothing has come on {} for {:.1f} s", topic.port, topic.name,
-                         Seconds(now - *heard.at));
-    if (!heard.wrong.empty()) return fmt::format("`{}`: {}: {}", topic.port, topic.name, heard.wrong);
-  }
+std::string Senses::Wrong(const Heard& heard, Time now) const {
+  const Topic& topic = heard.topic;
+  // What became of goals is said when something becomes of them.
+  if (topic.carries == Carries::kGoalStatus)
+    return heard.subscription->matched() > 0 ? "" : fmt::format("nobody sends on {}", topic.name);
+  AdaptedSensor::Said said{heard.at, heard.numbers, heard.wrong};
+  if (heard.adapted != nullptr) said = heard.adapted->said();
+  if (!said.wrong.empty() && (said.at || heard.adapted != nullptr))
+    return fmt::format("{}: {}", topic.name, said.wrong);
+  if (!said.at) return fmt::format("nothing has come on {} yet", topic.name);
+  if (Seconds(now - *said.at) > topic.max_age)
+    return fmt::format("nothing has come on {} for {:.1f} s", topic.name, Seconds(now - *said.at));
   return {};
 }
 
-bool Senses::Usable(size_t, uint64_t) { return Unusable(BootTime()).empty(); }
+std::string Senses::Unusable() {
+  if (!clock_.begun()) return "nothing has come on /clock yet";
+  const Time now = clock_.Now();
+  const std::lock_guard lock(mutex_);
+  for (const Heard& heard : heard_) {
+    const std::string why = Wrong(heard, now);
+    if (!why.empty()) return fmt::format("`{}`: {}", heard.topic.port, why);
+  }
+  if (flew_ && !(pilot_->armed && pilot_->offboard))
+    return "the autopilot does not listen any more: a pilot has taken over, or it has landed";
+  return {};
+}
+
+bool Senses::Usable(size_t, uint64_t) { return Unusable().empty(); }
 
 void Senses::Read(size_t robot, uint64_t, koord::node::Cell cell, std::span<Word> words) {
   if (robot != robot_) return;
@@ -209,10 +261,22 @@ void Senses::Read(size_t robot, uint64_t, koord::node::Cell cell, std::span<Word
     words[0] = static_cast<Word>(way_.reached());
     return;
   }
-  if (!heard || !heard_[*heard].at) return;
-  const std::array<double, 3>& numbers = heard_[*heard].numbers;
-  switch (heard_[*heard].topic.carries) {
+  if (!heard) return;
+  Heard& from = heard_[*heard];
+  if (from.topic.carries == Carries::kGoalStatus) {
+    words[0] = static_cast<Word>(goals_.reached().value_or(way_.reached()));
+    return;
+  }
+  if (from.adapted != nullptr) {
+    const AdaptedSensor::Said said = from.adapted->said();
+    from.at = said.at;
+    from.numbers = said.numbers;
+  }
+  if (!from.at) return;
+  const Numbers& numbers = from.numbers;
+  switch (from.topic.carries) {
     case Carries::kOdometry:
+    case Carries::kPx4Odometry:
       if (!place_) return;
       if (port->role == PortRole::kPosition) sim::WritePoint(place_->position, words.data());
       if (port->role == PortRole::kVelocity) sim::WritePoint(place_->velocity, words.data());
@@ -231,28 +295,31 @@ void Senses::Read(size_t robot, uint64_t, koord::node::Cell cell, std::span<Word
       words[0] = static_cast<Word>(numbers[0] != 0);
       return;
     case Carries::kNumber:
+    case Carries::kJointState:
       words[0] = FromFloat(numbers[0] + 0.0);
       return;
     case Carries::kPoint:
       return sim::WritePoint(numbers, words.data());
-    case Carries::kPose:
-    case Carries::kPath:
-    case Carries::kTwist:
-    case Carries::kTwistStamped:
-    case Carries::kAckermann:
+    default:
       return;
   }
 }
 
 void Senses::GoesAlong(const std::vector<Point>& path) {
   const std::lock_guard lock(mutex_);
+  goals_.Begin(clock_.Stamp());
   if (path.empty()) return way_.Begin({place_ ? place_->position : fleet_.robots[robot_].position});
   way_.Copy(path);
 }
 
-std::optional<Senses::Place> Senses::place() {
+std::optional<Place> Senses::place() {
   const std::lock_guard lock(mutex_);
   return place_;
+}
+
+std::optional<Autopilot> Senses::autopilot() {
+  const std::lock_guard lock(mutex_);
+  return pilot_;
 }
 
 }  // namespace rondo::platform

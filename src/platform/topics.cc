@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -9,28 +10,45 @@
 
 #include "lang/suggest.h"
 #include "ros/ackermann_msgs.h"
+#include "ros/action_msgs.h"
 #include "ros/names.h"
 #include "ros/nav_msgs.h"
+#include "ros/px4_msgs.h"
 #include "ros/sensor_msgs.h"
+#include "ros/trajectory_msgs.h"
 
 namespace rondo::platform {
 
 using sim::BodyPort;
 using sim::PortRole;
+using sim::PortVia;
 
 namespace {
 
-Carries CarriedBy(const sim::Port& port, size_t robot) {
-  if (const auto& own = port.own[robot]) {
-    switch (own->kind) {
-      case BodyPort::Kind::kNumber:
-        return Carries::kNumber;
-      case BodyPort::Kind::kPoint:
-        return Carries::kPoint;
-      case BodyPort::Kind::kBool:
-        return Carries::kBool;
-    }
+std::string NameOf(const koord::Model& model, const sim::Port& port) {
+  const koord::Variable& variable = model.variables[port.variable];
+  return variable.name.substr(variable.module.size() + 1);
+}
+
+const sim::FleetPort* Said(const sim::Fleet& fleet, const std::string& name) {
+  const auto said = fleet.ros.ports.find(name);
+  return said == fleet.ros.ports.end() ? nullptr : &said->second;
+}
+
+Carries CarriedBy(BodyPort::Kind kind) {
+  switch (kind) {
+    case BodyPort::Kind::kNumber:
+      return Carries::kNumber;
+    case BodyPort::Kind::kPoint:
+      return Carries::kPoint;
+    case BodyPort::Kind::kBool:
+      return Carries::kBool;
   }
+  return Carries::kNumber;
+}
+
+Carries UsuallyCarried(const sim::Port& port, size_t robot) {
+  if (const auto& own = port.own[robot]) return CarriedBy(own->kind);
   switch (port.role) {
     case PortRole::kPosition:
     case PortRole::kVelocity:
@@ -50,6 +68,40 @@ Carries CarriedBy(const sim::Port& port, size_t robot) {
   return Carries::kNumber;
 }
 
+// What the values of a type are to an adapter; nothing if it cannot have them.
+std::optional<Carries> AdaptedAs(const koord::Model& model, const sim::Port& port) {
+  const lang::TypeTable& types = model.types;
+  const lang::TypeId type = model.variables[port.variable].type;
+  if (types.Is(type, lang::TypeKind::kFloat)) return Carries::kNumber;
+  if (types.Is(type, lang::TypeKind::kBool)) return Carries::kBool;
+  if (types.Resolve(type) == types.pos()) return Carries::kPoint;
+  return std::nullopt;
+}
+
+Carries CarriedBy(const koord::Model& model, const sim::Port& port, size_t robot,
+                  const sim::FleetPort* said) {
+  const Carries usual = UsuallyCarried(port, robot);
+  switch (said == nullptr ? PortVia::kTopic : said->via) {
+    case PortVia::kTopic:
+      return usual;
+    case PortVia::kNav2:
+      return port.role == PortRole::kReached ? Carries::kGoalStatus : usual;
+    case PortVia::kTwist:
+      return said->stamped ? Carries::kTwistStamped : Carries::kTwist;
+    case PortVia::kAckermann:
+      return Carries::kAckermann;
+    case PortVia::kJointStates:
+      return Carries::kJointState;
+    case PortVia::kJointTrajectory:
+      return Carries::kJointTrajectory;
+    case PortVia::kPx4:
+      return sim::IsActuator(model, port) ? Carries::kPx4Setpoint : Carries::kPx4Odometry;
+    case PortVia::kAdapter:
+      return AdaptedAs(model, port).value_or(usual);
+  }
+  return usual;
+}
+
 std::string UsualName(Carries carries, const std::string& port) {
   switch (carries) {
     case Carries::kOdometry:
@@ -60,68 +112,122 @@ std::string UsualName(Carries carries, const std::string& port) {
       return "goal_pose";
     case Carries::kPath:
       return "path";
-    case Carries::kBool:
-    case Carries::kNumber:
-    case Carries::kPoint:
-    case Carries::kTwist:
-    case Carries::kTwistStamped:
-    case Carries::kAckermann:
-      break;
+    default:
+      return port;
   }
-  return port;
 }
 
-}  // namespace
-
-std::optional<Topic> TopicOf(const koord::Model& model, const sim::Fleet& fleet, size_t robot,
-                             const sim::Port& port) {
-  const koord::Variable& variable = model.variables[port.variable];
-  Topic topic;
-  topic.port = variable.name.substr(variable.module.size() + 1);
-  topic.carries = CarriedBy(port, robot);
-  const auto said = fleet.ros.ports.find(topic.port);
-  const bool named = said != fleet.ros.ports.end();
-  if (named && said->second.via == sim::PortVia::kTwist)
-    topic.carries = said->second.stamped ? Carries::kTwistStamped : Carries::kTwist;
-  if (named && said->second.via == sim::PortVia::kAckermann) topic.carries = Carries::kAckermann;
-  if (port.role == PortRole::kReached && !port.own[robot] && !named) return std::nullopt;
-  topic.name = ros::FullName(fleet.robots[robot].node_namespace,
-                             named ? said->second.topic : UsualName(topic.carries, topic.port));
-  topic.max_age = named && said->second.max_age > 0 ? said->second.max_age : 5 * fleet.delta;
+// Topics of an autopilot lie below a name.
+std::string Below(const std::string& topic, Carries carries) {
+  if (carries == Carries::kPx4Odometry) return topic + "/out/vehicle_odometry";
+  if (carries == Carries::kPx4Setpoint) return topic + "/in/trajectory_setpoint";
   return topic;
 }
 
-void CheckPorts(const koord::Model& model, const sim::Fleet& fleet, const std::vector<sim::Port>& ports,
-                diag::Diagnostics& diagnostics) {
-  std::set<std::string> known;
-  for (const sim::Port& port : ports) {
-    for (size_t r = 0; r < fleet.robots.size(); ++r) {
-      const koord::Variable& variable = model.variables[port.variable];
-      const std::string name = variable.name.substr(variable.module.size() + 1);
-      known.insert(name);
-      const auto said = fleet.ros.ports.find(name);
-      if (said == fleet.ros.ports.end() || said->second.via == sim::PortVia::kTopic) continue;
-      const bool goes = port.role == PortRole::kTarget || port.role == PortRole::kPath;
-      const auto body = fleet.robots[r].make();
-      body->Place(fleet.robots[r].position, fleet.robots[r].yaw);
-      const bool steers = said->second.via == sim::PortVia::kAckermann;
-      if (goes && body->Told() && (!steers || fleet.robots[r].model == "car")) continue;
-      auto& report = diagnostics.Report(
-          diag::Kind::kFleetValue, said->second.span,
-          !goes ? fmt::format("`{}` does not say where to go, so it cannot be made of velocities", name)
-                : fmt::format("`{}` is a `{}`, which is not driven by {}", fleet.robots[r].name,
-                              fleet.robots[r].model,
-                              steers ? "an angle of steering" : "velocities in the plane"));
-      report.Help("name a topic for it: `{ ros2 = \"goal_pose\" }`");
-      break;
+// What drivers usually ask for.
+ros::Qos QosOf(Carries carries, bool actuator) {
+  if (carries == Carries::kGoalStatus) return ros::kLatched;
+  if (carries == Carries::kPx4Odometry || carries == Carries::kPx4Setpoint)
+    return {.reliable = false, .depth = 1};
+  // Drivers keep where to go for as long as they like.
+  return actuator ? ros::Qos{.depth = 1} : ros::kSensorData;
+}
+
+// Looks at what a fleet file says of one port.
+class PortCheck {
+ public:
+  PortCheck(const koord::Model& model, const sim::Fleet& fleet, diag::Diagnostics& diagnostics)
+      : model_(model), fleet_(fleet), diagnostics_(diagnostics) {}
+
+  void Run(const sim::Port& port) {
+    const std::string name = NameOf(model_, port);
+    const sim::FleetPort* said = Said(fleet_, name);
+    if (said == nullptr) return;
+    for (size_t r = 0; r < fleet_.robots.size(); ++r) {
+      const auto [what, help] = Wrong(port, name, *said, r);
+      if (what.empty()) continue;
+      auto& report = diagnostics_.Report(diag::Kind::kFleetValue, said->span, what);
+      if (!help.empty()) report.Help(help);
+      return;
     }
   }
-  // A topic of two robots would be read, or obeyed, by both.
+
+ private:
+  using Text = std::pair<std::string, std::string>;
+
+  Text Wrong(const sim::Port& port, const std::string& name, const sim::FleetPort& said, size_t r) const {
+    const bool goes = port.role == PortRole::kTarget || port.role == PortRole::kPath;
+    const bool actuator = sim::IsActuator(model_, port);
+    const sim::FleetRobot& robot = fleet_.robots[r];
+    const bool number = port.own[r] && port.own[r]->kind == BodyPort::Kind::kNumber;
+    switch (said.via) {
+      case PortVia::kTopic:
+        return {};
+      case PortVia::kNav2:
+        if (goes || port.role == PortRole::kReached) return {};
+        return {fmt::format("Nav2 knows nothing of `{}`", name),
+                "it is told where to go, and says whether it is there: `target` and `reached`"};
+      case PortVia::kTwist:
+      case PortVia::kAckermann: {
+        const char* help = "name a topic for it: `{ ros2 = \"goal_pose\" }`";
+        if (!goes)
+          return {fmt::format("`{}` does not say where to go, so it cannot be made of velocities", name),
+                  help};
+        const bool steers = said.via == PortVia::kAckermann;
+        if (BodyOf(r)->Told() && (!steers || robot.model == "car")) return {};
+        return {fmt::format("`{}` is a `{}`, which is not driven by {}", robot.name, robot.model,
+                            steers ? "an angle of steering" : "velocities in the plane"),
+                help};
+      }
+      case PortVia::kJointStates:
+      case PortVia::kJointTrajectory: {
+        const bool tells = said.via == PortVia::kJointTrajectory;
+        if (number && tells == actuator) return {};
+        return {
+            fmt::format("`{}` is no {} of type `float`", name, tells ? "actuator" : "sensor"),
+            "a joint is where a sensor of type `float` says (`joint_states`), and goes where an actuator says "
+            "(`joint_trajectory`)"};
+      }
+      case PortVia::kPx4: {
+        const bool flies = port.role == PortRole::kPosition || port.role == PortRole::kVelocity ||
+                           port.role == PortRole::kHeading || port.role == PortRole::kTarget;
+        if (!flies)
+          return {fmt::format("an autopilot knows nothing of `{}`", name),
+                  "it says `psn`, `velocity` and `heading`, and flies to a `target`"};
+        if (!BodyOf(r)->flies())
+          return {fmt::format("`{}` is a `{}`, which does not fly", robot.name, robot.model), {}};
+        if (!robot.origin)
+          return {fmt::format("nobody knows where the autopilot of `{}` counts from", robot.name),
+                  "say it in its `[[robot]]`: `origin = \"start\"`, or a point: `origin = [x, y, z]`"};
+        return {};
+      }
+      case PortVia::kAdapter:
+        if (AdaptedAs(model_, port)) return {};
+        return {fmt::format("`{}` is no `float`, `bool` or `pos`, which is what an adapter can have", name),
+                {}};
+    }
+    return {};
+  }
+
+  std::unique_ptr<sim::Body> BodyOf(size_t r) const {
+    auto body = fleet_.robots[r].make();
+    body->Place(fleet_.robots[r].position, fleet_.robots[r].yaw);
+    return body;
+  }
+
+  const koord::Model& model_;
+  const sim::Fleet& fleet_;
+  diag::Diagnostics& diagnostics_;
+};
+
+// A topic of two robots would be read, or obeyed, by both.
+void CheckShared(const koord::Model& model, const sim::Fleet& fleet, const std::vector<sim::Port>& ports,
+                 diag::Diagnostics& diagnostics) {
   std::map<std::string, size_t> of;
   for (const sim::Port& port : ports) {
     for (size_t r = 0; r < fleet.robots.size(); ++r) {
       const auto topic = TopicOf(model, fleet, r, port);
-      if (!topic) continue;
+      if (!topic || !topic->library.empty()) continue;
       const auto [it, fresh] = of.emplace(topic->name, r);
       if (it->second == r) continue;
       diagnostics
@@ -132,6 +238,26 @@ void CheckPorts(const koord::Model& model, const sim::Fleet& fleet, const std::v
       return;
     }
   }
+}
+
+}  // namespace
+
+std::vector<sim::Port> PortsOf(const koord::Model& model, const sim::Fleet& fleet,
+                               diag::Diagnostics& diagnostics) {
+  std::set<std::string> adapted;
+  for (const auto& [name, port] : fleet.ros.ports) {
+    if (port.via == PortVia::kAdapter) adapted.insert(name);
+  }
+  const size_t before = diagnostics.errors();
+  std::vector<sim::Port> ports = sim::FindPorts(model, fleet.robots, diagnostics, adapted);
+  if (diagnostics.errors() != before) return ports;
+  std::set<std::string> known;
+  PortCheck check(model, fleet, diagnostics);
+  for (const sim::Port& port : ports) {
+    known.insert(NameOf(model, port));
+    check.Run(port);
+  }
+  CheckShared(model, fleet, ports, diagnostics);
   for (const auto& [name, port] : fleet.ros.ports) {
     if (known.contains(name)) continue;
     const std::string near = lang::Suggest(name, {known.begin(), known.end()});
@@ -140,6 +266,60 @@ void CheckPorts(const koord::Model& model, const sim::Fleet& fleet, const std::v
     report.Help(near.empty() ? fmt::format("it has {}", fmt::join(known, ", "))
                              : fmt::format("did you mean `{}`?", near));
   }
+  return ports;
+}
+
+std::optional<Topic> TopicOf(const koord::Model& model, const sim::Fleet& fleet, size_t robot,
+                             const sim::Port& port) {
+  Topic topic;
+  topic.port = NameOf(model, port);
+  const sim::FleetPort* said = Said(fleet, topic.port);
+  if (port.role == PortRole::kReached && !port.own[robot] && said == nullptr) return std::nullopt;
+  topic.carries = CarriedBy(model, port, robot, said);
+  topic.max_age = 5 * fleet.delta;
+  topic.qos = QosOf(topic.carries, sim::IsActuator(model, port));
+  if (said == nullptr) {
+    topic.name = ros::FullName(fleet.robots[robot].node_namespace, UsualName(topic.carries, topic.port));
+    return topic;
+  }
+  if (said->max_age > 0) topic.max_age = said->max_age;
+  topic.qos.reliable = said->reliable.value_or(topic.qos.reliable);
+  topic.qos.transient_local = said->transient_local.value_or(topic.qos.transient_local);
+  topic.qos.depth = said->depth.value_or(topic.qos.depth);
+  topic.joint = said->joint;
+  topic.within = said->within > 0 ? said->within : fleet.delta;
+  topic.system = static_cast<uint8_t>(said->system > 0 ? said->system : robot + 1);
+  topic.options = said->options;
+  if (said->via == PortVia::kAdapter)
+    topic.name = topic.library = said->topic;
+  else
+    topic.name = ros::FullName(fleet.robots[robot].node_namespace, Below(said->topic, topic.carries));
+  return topic;
+}
+
+Topic OdometryOf(const sim::Fleet& fleet, size_t robot) {
+  const auto flown = std::ranges::find_if(fleet.ros.ports,
+                                          [](const auto& port) { return port.second.via == PortVia::kPx4; });
+  Topic topic;
+  topic.port = "where it is";
+  topic.carries = flown == fleet.ros.ports.end() ? Carries::kOdometry : Carries::kPx4Odometry;
+  topic.max_age = 5 * fleet.delta;
+  topic.qos = QosOf(topic.carries, false);
+  topic.name = ros::FullName(fleet.robots[robot].node_namespace,
+                             flown == fleet.ros.ports.end() ? UsualName(topic.carries, "")
+                                                            : Below(flown->second.topic, topic.carries));
+  return topic;
+}
+
+std::string Beside(const std::string& topic, const char* name) {
+  return topic.substr(0, topic.rfind('/') + 1) + name;
+}
+
+std::vector<std::string> TopicsBeside(const Topic& topic) {
+  if (topic.carries == Carries::kPx4Odometry) return {Beside(topic.name, kControlMode)};
+  if (topic.carries == Carries::kPx4Setpoint)
+    return {Beside(topic.name, kOffboardMode), Beside(topic.name, kVehicleCommand)};
+  return {};
 }
 
 const ros::Message& TypeOf(Carries carries) {
@@ -164,6 +344,16 @@ const ros::Message& TypeOf(Carries carries) {
       return ros::geometry_msgs::TwistStamped::kMessage;
     case Carries::kAckermann:
       return ros::ackermann_msgs::AckermannDriveStamped::kMessage;
+    case Carries::kGoalStatus:
+      return ros::action_msgs::GoalStatusArray::kMessage;
+    case Carries::kJointState:
+      return ros::sensor_msgs::JointState::kMessage;
+    case Carries::kJointTrajectory:
+      return ros::trajectory_msgs::JointTrajectory::kMessage;
+    case Carries::kPx4Odometry:
+      return ros::px4_msgs::VehicleOdometry::kMessage;
+    case Carries::kPx4Setpoint:
+      return ros::px4_msgs::TrajectorySetpoint::kMessage;
   }
   return ros::std_msgs::Empty::kMessage;
 }
@@ -181,9 +371,9 @@ ros::builtin_interfaces::Time StampOf(int64_t nanoseconds) {
   return stamp;
 }
 
-ros::std_msgs::Header HeaderOf(const std::string& frame) {
+ros::std_msgs::Header HeaderOf(const std::string& frame, int64_t stamp) {
   ros::std_msgs::Header header;
-  header.stamp = StampOf(WallTime());
+  header.stamp = StampOf(stamp);
   header.frame_id = frame;
   return header;
 }

@@ -17,16 +17,21 @@ namespace rondo::platform {
 
 /// Names what a topic carries.
 enum class Carries : uint8_t {
-  kOdometry,      ///< nav_msgs/Odometry: where the robot is, and how fast
-  kScan,          ///< sensor_msgs/LaserScan
-  kPose,          ///< geometry_msgs/PoseStamped: where to go
-  kPath,          ///< nav_msgs/Path: which way to go
-  kBool,          ///< std_msgs/Bool
-  kNumber,        ///< std_msgs/Float64
-  kPoint,         ///< geometry_msgs/Point
-  kTwist,         ///< geometry_msgs/Twist: how to move; the robot's node has the controller
-  kTwistStamped,  ///< geometry_msgs/TwistStamped: the same
-  kAckermann,     ///< ackermann_msgs/AckermannDriveStamped: the same
+  kOdometry,         ///< nav_msgs/Odometry: where the robot is, and how fast
+  kScan,             ///< sensor_msgs/LaserScan
+  kPose,             ///< geometry_msgs/PoseStamped: where to go
+  kPath,             ///< nav_msgs/Path: which way to go
+  kBool,             ///< std_msgs/Bool
+  kNumber,           ///< std_msgs/Float64
+  kPoint,            ///< geometry_msgs/Point
+  kTwist,            ///< geometry_msgs/Twist: how to move; the robot's node has the controller
+  kTwistStamped,     ///< geometry_msgs/TwistStamped: the same
+  kAckermann,        ///< ackermann_msgs/AckermannDriveStamped: the same
+  kGoalStatus,       ///< action_msgs/GoalStatusArray: what became of goals
+  kJointState,       ///< sensor_msgs/JointState: where a joint is
+  kJointTrajectory,  ///< trajectory_msgs/JointTrajectory: where a joint is to be
+  kPx4Odometry,      ///< px4_msgs/VehicleOdometry: as kOdometry
+  kPx4Setpoint,  ///< px4_msgs/TrajectorySetpoint: where to fly; the robot's node has what PX4 wants to hear besides
 };
 
 /// Reports whether a topic carries how to move, from moment to moment.
@@ -39,29 +44,46 @@ struct Topic {
   std::string port;  ///< its name in the program, without the module
   std::string name;  ///< in full, with the namespace of the robot
   Carries carries = Carries::kNumber;
-  double max_age = 0;  ///< of a sensor, in seconds
+  double max_age = 0;            ///< of a sensor, in seconds
+  ros::Qos qos;                  ///< of the robot's node
+  std::string joint;             ///< of kJointState and kJointTrajectory
+  double within = 0;             ///< of kJointTrajectory, in seconds
+  uint8_t system = 1;            ///< of kPx4Setpoint: the number of the autopilot
+  std::string library, options;  ///< of the user's adapter, which stands for the topic; empty: there is none
 };
+
+/// Returns the ports of the program. Reports those that a robot lacks, that the fleet connects with what they are not, or
+/// that the program does not have.
+std::vector<sim::Port> PortsOf(const koord::Model& model, const sim::Fleet& fleet,
+                               diag::Diagnostics& diagnostics);
 
 /// Returns the topic of a port of a robot: what the fleet says, else the usual one. Nothing for `reached`, unless the fleet
 /// names a topic: the robot finds out by itself whether it is where it was told to go.
 std::optional<Topic> TopicOf(const koord::Model& model, const sim::Fleet& fleet, size_t robot,
                              const sim::Port& port);
+/// Returns the usual topic on which a robot says where it is, whether a port asks for it or not.
+Topic OdometryOf(const sim::Fleet& fleet, size_t robot);
 
-/// Reports ports that a fleet connects with what they are not, or that the program does not have.
-void CheckPorts(const koord::Model& model, const sim::Fleet& fleet, const std::vector<sim::Port>& ports,
-                diag::Diagnostics& diagnostics);
+/// Name the topics that an autopilot has beside those of its odometry, and of its setpoints.
+inline constexpr const char *kControlMode = "vehicle_control_mode", *kOffboardMode = "offboard_control_mode",
+                            *kVehicleCommand = "vehicle_command";
+/// Returns a topic of this name that lies beside another.
+std::string Beside(const std::string& topic, const char* name);
+/// Returns the other topics that go with one: those of an autopilot.
+std::vector<std::string> TopicsBeside(const Topic& topic);
 
 /// Returns the type of the messages on it.
 const ros::Message& TypeOf(Carries carries);
 
-/// Returns a header with this frame and what the wall clock says.
-ros::std_msgs::Header HeaderOf(const std::string& frame);
+/// Returns a header with this frame and this time, in nanoseconds since 1970.
+ros::std_msgs::Header HeaderOf(const std::string& frame, int64_t stamp);
 /// Converts times since 1970 in nanoseconds.
 ros::builtin_interfaces::Time StampOf(int64_t nanoseconds);
 int64_t WallTime();
 
 /// Converts a point; `Finite`: none of its numbers is infinite or none.
 inline sim::Point PointOf(const ros::geometry_msgs::Point& p) { return {p.x, p.y, p.z}; }
+inline ros::geometry_msgs::Point PointOf(const sim::Point& p) { return {p[0], p[1], p[2]}; }
 inline bool Finite(const sim::Point& p) { return std::isfinite(p[0] + p[1] + p[2]); }
 
 /// Converts angles around the vertical axis, in radians, and orientations; of one that is none, the angle is 0.

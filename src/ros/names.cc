@@ -28,6 +28,19 @@ std::string FullName(std::string_view node_namespace, std::string_view name) {
   return full + "/" + std::string(name);
 }
 
+std::string Plain(std::string_view text) {
+  std::string name;
+  for (const char c : text) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
+      name += c;
+    } else if (!name.empty() && name.back() != '_') {
+      name += '_';
+    }
+  }
+  while (name.ends_with('_')) name.pop_back();
+  return name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) != 0 ? "p" + name : name;
+}
+
 std::string WireTopic(std::string_view full_name) { return "rt" + std::string(full_name); }
 
 std::string WireType(std::string_view type) {

@@ -14,6 +14,9 @@ bool IsName(std::string_view name);
 /// names; a namespace is "" or "/" for the root.
 std::string FullName(std::string_view node_namespace, std::string_view name);
 
+/// Returns a text as a part of a name: what may not stand in one is `_`.
+std::string Plain(std::string_view text);
+
 /// Returns the name of the topic on the wire: `/robot1/odom` is `rt/robot1/odom`.
 std::string WireTopic(std::string_view full_name);
 /// Returns the name of a type on the wire: `geometry_msgs/msg/Twist` is `geometry_msgs::msg::dds_::Twist_`.

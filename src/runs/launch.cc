@@ -15,6 +15,7 @@
 #include <mutex>
 #include <thread>
 
+#include "deploy/keystore.h"
 #include "platform/topics.h"
 
 namespace rondo::runs {
@@ -113,19 +114,18 @@ class Launcher {
     fs::create_directories(options_.logs, failed);
     if (failed)
       return base::Error{fmt::format("cannot use the folder `{}`: {}", options_.logs, failed.message())};
-    dds::Network network = program_.texts.network;
-    network.profile = dds::Profile::kLoopback;
-    auto with = dds::WithEnvironment(network);
-    if (!with.ok()) return with.error();
     // All are on this machine, whatever the fleet says.
     ::setenv("ROS_LOCALHOST_ONLY", "1", 1);
-    ::setenv("ROS_DOMAIN_ID", fmt::to_string(with.value().domain).c_str(), 1);
     ::unsetenv("ROS_AUTOMATIC_DISCOVERY_RANGE");
-    if (const auto started = Start(); !started.ok()) return started.error();
+    const auto with = NetworkOf(program_, deploy::kBodiesEnclave);
+    if (!with.ok()) return with.error();
     domain_ = with.value().domain;
+    ::setenv("ROS_DOMAIN_ID", fmt::to_string(domain_).c_str(), 1);
+    if (const auto started = Start(); !started.ok()) return started.error();
     auto participant = dds::Participant::Open(with.value());
     if (!participant.ok()) return participant.error();
-    deploy::Stage stage(program_.loaded->model, program_.fleet, program_.texts.seed, options_.trace);
+    deploy::Stage stage(program_.loaded->model, program_.fleet, program_.texts.seed, options_.speed,
+                        options_.trace);
     if (const auto alone = Alone(*participant.value()); !alone.ok()) return alone.error();
     if (const auto begun = stage.Begin(*participant.value(), Record(), session_.diagnostics); !begun.ok())
       return begun.error();
@@ -233,7 +233,7 @@ class Launcher {
       const auto statuses = Statuses();
       const bool rounds = std::ranges::any_of(statuses, [](const auto& s) { return s.round > 0; });
       if (rounds && !begun) begun = Clock::now();
-      if (begun) report_.time = std::chrono::duration<double>(Clock::now() - *begun).count();
+      if (begun) report_.time = options_.speed * std::chrono::duration<double>(Clock::now() - *begun).count();
       if (options_.progress && i % 25 == 0) options_.progress(statuses, report_.time);
       report_.interrupted = options_.stop.StopRequested();
       const size_t running = children_.Running();

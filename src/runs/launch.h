@@ -17,7 +17,8 @@ namespace rondo::runs {
 struct LaunchOptions {
   std::string executable;  ///< the program that runs one robot: `EXECUTABLE run FILE --robot NAME ...`
   std::string logs;        ///< the folder of the logs
-  double duration = 0;     ///< seconds from when the first round begins; 0: as the fleet says
+  double speed = 1;        ///< seconds of the world in one; not 1 only if the fleet has `use_sim_time`
+  double duration = 0;     ///< seconds of the world from when the first round begins; 0: as the fleet says
   trace::Writer* trace = nullptr;  ///< of the bodies
   base::StopToken stop;
   /// Receives, now and then, what the robots say of themselves, and how many seconds the run is old.
@@ -36,7 +37,7 @@ struct RobotEnd {
 /// Tells what became of the fleet.
 struct LaunchReport {
   bool interrupted = false;
-  double time = 0;  ///< seconds, since the first round began
+  double time = 0;  ///< seconds of the world, since the first round began
   std::vector<RobotEnd> robots;
   deploy::StageReport stage;
   std::optional<deploy::LogsReport> logs;  ///< nothing: they cannot be judged

@@ -2,10 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
+#include <filesystem>
+
+#include "deploy/keystore.h"
 #include "runtime/codec/messages.h"
 #include "sim/draw/history.h"
 
 namespace rondo::runs {
+
+namespace fs = std::filesystem;
 
 std::optional<RobotProgram> LoadRobotProgram(const SimulationFiles& files, std::optional<uint64_t> seed,
                                              workspace::Session& session) {
@@ -36,7 +42,34 @@ std::optional<RobotProgram> LoadRobotProgram(const SimulationFiles& files, std::
   for (const sim::FleetRobot& robot : p.fleet.robots) {
     if (!robot.address.empty()) p.texts.network.peers.push_back(robot.address);
   }
+  // What a fleet file names lies beside it; libraries that are not there, the loader looks for.
+  const fs::path folder = fs::absolute(files.fleet).parent_path();
+  if (!p.fleet.ros.keys.empty()) p.keys = (folder / p.fleet.ros.keys).string();
+  for (auto& [name, port] : p.fleet.ros.ports) {
+    if (port.via == sim::PortVia::kAdapter && fs::exists(folder / port.topic))
+      port.topic = (folder / port.topic).string();
+  }
   return p;
+}
+
+base::Result<dds::Network> NetworkOf(const RobotProgram& program, const std::string& enclave) {
+  auto network = dds::WithEnvironment(program.texts.network);
+  if (!network.ok()) return network;
+  std::string folder = program.keys;
+  const char* wanted = std::getenv("ROS_SECURITY_ENABLE");
+  if (wanted != nullptr && std::string_view(wanted) == "true") {
+    const char* store = std::getenv("ROS_SECURITY_KEYSTORE");
+    if (store == nullptr || *store == '\0')
+      return base::Error{
+          "ROS_SECURITY_ENABLE is `true`, and ROS_SECURITY_KEYSTORE does not say where the keys are"};
+    folder = store;
+  }
+  if (folder.empty()) return network;
+  const auto keys = deploy::KeysFor(folder, enclave, program.texts);
+  if (!keys.ok()) return keys.error();
+  dds::Network with = std::move(network).value();
+  with.keys = keys.value();
+  return with;
 }
 
 std::optional<RobotProgram> LoadRobotProgram(const nlohmann::json& run, workspace::Session& session) {

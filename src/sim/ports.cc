@@ -53,8 +53,9 @@ std::string Describe(const BodyPort& port) {
 
 class Finder {
  public:
-  Finder(const koord::Model& model, const std::vector<FleetRobot>& robots, diag::Diagnostics& diagnostics)
-      : model_(model), robots_(robots), diagnostics_(diagnostics) {
+  Finder(const koord::Model& model, const std::vector<FleetRobot>& robots, diag::Diagnostics& diagnostics,
+         const std::set<std::string>& elsewhere)
+      : model_(model), robots_(robots), diagnostics_(diagnostics), elsewhere_(elsewhere) {
     // Robots of one kind have the same ports.
     for (const FleetRobot& robot : robots) {
       auto& body = bodies_[robot.from + "\n" + robot.model];
@@ -78,6 +79,10 @@ class Finder {
   void Find(size_t v, bool sensor) {
     const koord::Variable& variable = model_.variables[v];
     const std::string name = variable.name.substr(variable.module.size() + 1);
+    if (elsewhere_.contains(name)) {
+      ports_.push_back({v, PortRole::kOwn, std::vector<std::optional<BodyPort>>(robots_.size())});
+      return;
+    }
     Port port{v, RoleOf(model_.types, name, variable.type, sensor), {}};
     for (size_t r = 0; r < robots_.size(); ++r) {
       const FleetRobot& robot = robots_[r];
@@ -119,6 +124,7 @@ class Finder {
   const koord::Model& model_;
   const std::vector<FleetRobot>& robots_;
   diag::Diagnostics& diagnostics_;
+  const std::set<std::string>& elsewhere_;
   std::map<std::string, std::unique_ptr<Body>> bodies_;
   std::vector<const Body*> of_robot_;
   std::vector<Port> ports_;
@@ -166,7 +172,7 @@ void ReadAtRest(const koord::Model& model, const Port& port, size_t robot, const
     ReadSensor(port, robot, body, at);
   } else if (port.role == PortRole::kPath) {
     *at = EncodePath(heap, {body.position()});
-  } else {
+  } else if (port.role == PortRole::kTarget) {
     WritePoint(body.position(), at);
   }
 }
@@ -185,8 +191,8 @@ void Obey(const Port& port, size_t robot, const Heap& heap, const Word* at, Body
 }
 
 std::vector<Port> FindPorts(const koord::Model& model, const std::vector<FleetRobot>& robots,
-                            diag::Diagnostics& diagnostics) {
-  return Finder(model, robots, diagnostics).Run();
+                            diag::Diagnostics& diagnostics, const std::set<std::string>& elsewhere) {
+  return Finder(model, robots, diagnostics, elsewhere).Run();
 }
 
 }  // namespace rondo::sim

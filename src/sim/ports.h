@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "diag/diagnostic.h"
@@ -32,8 +34,9 @@ struct Port {
 };
 
 /// Returns the ports of the program, by name and type. Reports each one that a robot lacks.
+/// @param elsewhere  names of ports that are not those of bodies: they are kOwn, and nobody's.
 std::vector<Port> FindPorts(const koord::Model& model, const std::vector<FleetRobot>& robots,
-                            diag::Diagnostics& diagnostics);
+                            diag::Diagnostics& diagnostics, const std::set<std::string>& elsewhere = {});
 
 /// Reports whether the program sets that port.
 bool IsActuator(const koord::Model& model, const Port& port);

@@ -39,6 +39,11 @@ def main():
         program, models, examples = (user / "build/found").read_text().split("\n")[:3]
         cache = {**os.environ, "XDG_CACHE_HOME": folder}
         run(program, "check", f"{examples}/koord/lineform.koord", f"{examples}/choreo/handover.rondo", env=cache)
+        # The example of an adapter, built by whoever has only what was installed.
+        run("cmake", "-S", f"{examples}/adapters", "-B", user / "adapters", f"-DCMAKE_PREFIX_PATH={prefix}")
+        run("cmake", "--build", user / "adapters")
+        if not (user / "adapters/libbattery.so").is_file():
+            sys.exit("no adapter was built")
         if not any(pathlib.Path(models).glob("**/*.rondo")):
             sys.exit(f"no models in {models}")
     print("installed, found and run")

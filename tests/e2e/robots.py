@@ -2,13 +2,15 @@
 """Fleets as processes: `rondo run`, `rondo launch`, `rondo doctor`, `rondo replay LOG ...`, with nothing but DDS between them,
 and drivers of other vendors.
 
-  robots.py RONDO
+  robots.py RONDO [PART...]
 """
 import json
 import os
 import pathlib
+import random
 import re
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -17,6 +19,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RONDO = pathlib.Path(sys.argv[1]).resolve()
 DRIVER = RONDO.parent / "fastdds_driver"
+LIBRARIES = RONDO.parent.parent / "adapters"
 PYTHON = ROOT / "build/python/bin/python3"
 LINEFORM = str(ROOT / "examples/koord/lineform")
 TURTLES = ROOT / "examples/koord/turtlebots.toml"
@@ -77,9 +80,147 @@ def fleets(folder):
     status, report = launch(LINEFORM, "--fleet", cars, "--duration", 4)
     clean("ackermann", report, 12)
     check("ackermann: status", status == 0, status, report)
-    status, report = launch(ROOT / "examples/koord/delivery", "--duration", 30)
+    drones = fleet(folder, "px4.toml", ('model = "unicycle"', 'model = "quadrotor"\norigin = "start"'), ("position = [0, 0, 0]", "position = [0, 0, 1]"),
+                   ('psn = { ros2 = "odom", max_age = 0.5 }', 'psn = { px4 = "fmu" }'), ('target = { cmd_vel = "cmd_vel" }', 'target = { px4 = "fmu" }'),
+                   ("{ max_speed = 0.6 }", "{ tolerance = 0.2 }"))
+    status, report = launch(LINEFORM, "--fleet", drones, "--duration", 6, "--logs", folder / "px4")
+    clean("px4", report, 20)
+    check("px4: status", status == 0, status, report)
+    check("px4: they fly", moved(folder / "px4" / "bot1.mcap"))
+
+
+def simulated_time(folder):
+    """A clock that runs faster, and one that stands still; goals of Nav2 and joints, whose drivers say what became of them."""
+    text = (ROOT / "examples/koord/delivery.toml").read_text()
+    path = folder / "delivery.toml"
+    path.write_text(text + '\n[ros]\nuse_sim_time = true\n\n[ports]\npath = { nav2 = "plan" }\n'
+                    'reached = { nav2 = "navigate_to_pose/_action/status" }\n')
+    status, report = launch(ROOT / "examples/koord/delivery", "--fleet", path, "--duration", 60, "--speed", 3)
     clean("delivery", report, 30)
     check("delivery: every robot stopped", status == 3 and all(r["status"] == 0 for r in report["robots"]), status, report)
+    text = (ROOT / "examples/koord/hvac.toml").read_text().replace("../../models", str(ROOT / "models"))
+    path = folder / "hvac.toml"
+    path.write_text(text + '\n[rounds]\nlease = 150\npatience = 150\n\n[ros]\nuse_sim_time = true\n\n[ports]\n'
+                    'temperature = { joint_states = "joint_states", joint = "room", reliable = true }\n'
+                    'power = { joint_trajectory = "heater/joint_trajectory", joint = "room", within = 1 }\n')
+    status, report = launch(ROOT / "examples/koord/hvac", "--fleet", path, "--duration", 500, "--speed", 100)
+    clean("joints", report, 8)
+    check("joints: status", status == 0, status, report)
+    done = rondo("launch", LINEFORM, "--fleet", TURTLES, "--speed", 2)
+    check("speed: not without a simulated clock", done.returncode == 1 and "use_sim_time" in done.stderr, done.stderr)
+    path = fleet(folder, "paused.toml", ("[ros]", "[ros]\nuse_sim_time = true"))
+    process = subprocess.Popen([str(RONDO), "launch", LINEFORM, "--fleet", str(path), "--duration", "8", "--json"], stdout=subprocess.PIPE, text=True)
+    time.sleep(4)
+    process.send_signal(signal.SIGSTOP)  # the world, and its clock: for longer than a lease
+    time.sleep(3)
+    process.send_signal(signal.SIGCONT)
+    report = json.loads(process.communicate(timeout=120)[0])
+    clean("paused", report, 12)
+    check("paused: nobody is given up", all("falls back" not in h["what"] for h in report["judged"]["happenings"]), report["judged"])
+
+
+def adapters(folder):
+    """Hardware that only libraries of the user know."""
+    example = ROOT / "examples/adapters"
+    (folder / "lantern.koord").write_text((example / "lantern.koord").read_text())
+    fleet_ = (example / "lantern.toml").read_text()
+    for old, new in (("libbattery.so", str(LIBRARIES / "libbattery.so")), ("liblamp.so", str(LIBRARIES / "liblamp.so")),
+                     ("/sys/class/power_supply/BAT0/capacity", str(folder / "charge")), ("/sys/class/leds/lantern/brightness", str(folder / "lamp"))):
+        check(f"{old} is in the fleet", old in fleet_)
+        fleet_ = fleet_.replace(old, new)
+    (folder / "lantern.toml").write_text(fleet_)
+    (folder / "charge").write_text("80\n")
+    process = subprocess.Popen([str(RONDO), "run", folder / "lantern.koord", "--robot", "lantern"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def lamp(value):
+        for _ in range(100):
+            if (folder / "lamp").exists() and (folder / "lamp").read_text() == value:
+                return True
+            time.sleep(0.1)
+        return False
+    check("adapters: it shines", lamp("1"))
+    (folder / "charge").write_text("10\n")
+    check("adapters: it rests", lamp("0"))
+    (folder / "charge").write_text("none\n")
+    time.sleep(1.5)
+    (folder / "charge").write_text("90\n")
+    check("adapters: it shines again", lamp("1"))
+    process.send_signal(signal.SIGTERM)
+    out, err = process.communicate(timeout=60)
+    check("adapters: it ends", process.returncode == 0, out, err)
+    check("adapters: a bad sensor is said", "skips: `charge`" in err and "cannot read" in err, err)
+    check("adapters: it is safe at the end", (folder / "lamp").read_text() == "0")
+    (folder / "lantern.toml").write_text(fleet_.replace("libbattery.so", "libnone.so"))
+    done = rondo("run", folder / "lantern.koord", "--robot", "lantern")
+    check("adapters: no library", done.returncode == 1 and "cannot load the adapter of `charge`" in done.stderr, done.stderr)
+
+
+def secured(folder):
+    path = fleet(folder, "secured.toml", ("[ros]", '[ros]\nkeys = "keys"'))
+    done = rondo("launch", LINEFORM, "--fleet", path, "--duration", 2)
+    check("keys: there are none", done.returncode == 1 and "`rondo keys` makes them" in done.stderr, done.stderr)
+    done = rondo("keys", LINEFORM, "--fleet", path, "--json")
+    made = json.loads(done.stdout)
+    check("keys: made", done.returncode == 0 and len(made["made"]) == 6 and made["owner"] == "made", made)
+    key = folder / "keys/enclaves/bot0/key.pem"
+    before = key.read_text()
+    check("keys: for their owner alone", (folder / "keys/private").stat().st_mode & 0o77 == 0 and key.parent.stat().st_mode & 0o77 == 0)
+    rondo("keys", LINEFORM, "--fleet", path)
+    check("keys: stay", key.read_text() == before)
+    process = subprocess.Popen([str(RONDO), "launch", LINEFORM, "--fleet", str(path), "--duration", "9", "--json", "--logs", folder / "secured"],
+                               stdout=subprocess.PIPE, text=True)
+    replayed = stranger(2.5)
+    done = subprocess.run([str(PYTHON), str(ROOT / "tests/peers/cyclonedds_listener.py"), str(DOMAIN), "bot0", "2"], capture_output=True, text=True, timeout=60)
+    check("keys: who has none hears nothing", done.stdout == "nothing\n", done.stdout, done.stderr)
+    done = rondo("doctor", LINEFORM, "--fleet", path, "--seconds", 2)
+    check("keys: the doctor has one", done.returncode == 0 and "nothing is wrong" in done.stdout, done.stdout, done.stderr)
+    report = json.loads(process.communicate(timeout=120)[0])
+    clean("keys", report, 25)
+    check("keys: status", process.returncode == 0, report)
+    check("keys: said", "DDS with security" in (folder / "secured/bot0.txt").read_text())
+    print(f"replayed and oversized: {replayed}")
+    other = fleet(folder, "altered.toml", ("[ros]", '[ros]\nkeys = "keys"'), ("lease = 1", "lease = 2"))
+    done = rondo("run", LINEFORM, "--fleet", other, "--robot", "bot0")
+    check("keys: other files than were signed", done.returncode == 1 and "is not what was signed" in done.stderr, done.stderr)
+    signed = folder / "keys/enclaves/bot0/files.p7s"
+    signed.write_text(signed.read_text().replace("program ", "program 0", 1))
+    done = rondo("run", LINEFORM, "--fleet", path, "--robot", "bot0")
+    check("keys: an altered signature", done.returncode == 1 and "it is not what was signed" in done.stderr, done.stderr)
+
+
+def stranger(seconds):
+    """Repeats what it hears on the wire, and sends datagrams that are too long or none; says how many."""
+    try:
+        ear = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(0x0800))
+    except PermissionError:
+        return "skipped: nobody may listen to the wire here"
+    ear.bind(("lo", 0))
+    ear.settimeout(0.2)
+    mouth = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    first, count, heard = 7400 + 250 * DOMAIN, 0, []
+    end = time.time() + seconds
+    while time.time() < end:
+        try:
+            frame = ear.recv(65536)
+        except TimeoutError:
+            continue
+        if len(frame) < 42 or frame[23] != 17:
+            continue
+        port, data = int.from_bytes(frame[36:38], "big"), frame[42:]
+        if first <= port < first + 250 and len(heard) < 3000:
+            heard.append((socket.inet_ntoa(frame[30:34]), port, data))
+    random.seed(1)
+    for address, port, data in heard:
+        broken = bytearray(data)
+        broken[random.randrange(len(broken))] ^= 0xff
+        for bytes_ in (data, bytes(broken), data + bytes(60000 - len(data)) if count % 50 == 0 else data[: len(data) // 2]):
+            try:
+                mouth.sendto(bytes_, (address, port))
+                count += 1
+            except OSError:
+                pass
+    check("keys: something was repeated", count > 100, count)
+    return count
 
 
 def moved(log):
@@ -271,6 +412,20 @@ def refusals(folder):
     drones = fleet(folder, "no.toml", ('model = "unicycle"', 'model = "quadrotor"'), ("{ max_speed = 0.6 }", "{ tolerance = 0.2 }"))
     done = rondo("launch", LINEFORM, "--fleet", drones)
     check("launch: drones have no wheels", done.returncode == 1 and "not driven by velocities" in done.stderr, done.stderr)
+    odom, drive = 'psn = { ros2 = "odom", max_age = 0.5 }', 'target = { cmd_vel = "cmd_vel" }'
+    for what, old, new, says in (("nav2", odom, 'psn = { nav2 = "odom" }', "Nav2 knows nothing of `psn`"),
+                                 ("joints", odom, 'psn = { joint_states = "j", joint = "a" }', "`psn` is no sensor of type `float`"),
+                                 ("a car that flies", drive, 'target = { px4 = "fmu" }', "which does not fly"),
+                                 ("a port that is none", odom, 'psm = { ros2 = "odom" }', "did you mean `psn`?"),
+                                 ("a word that is none", drive, 'target = { cmd_val = "a" }', "`target` needs a topic")):
+        done = rondo("launch", LINEFORM, "--fleet", fleet(folder, "wrong.toml", (old, new)))
+        check(f"ports: {what}", done.returncode == 1 and says in done.stderr, done.stderr)
+    drones = fleet(folder, "no.toml", ('model = "unicycle"', 'model = "quadrotor"'), ("{ max_speed = 0.6 }", "{ tolerance = 0.2 }"),
+                   (drive, 'target = { px4 = "fmu" }'))
+    done = rondo("launch", LINEFORM, "--fleet", drones)
+    check("ports: an autopilot without an origin", done.returncode == 1 and 'origin = "start"' in done.stderr, done.stderr)
+    done = rondo("keys", LINEFORM, "--fleet", TURTLES)
+    check("keys: nobody says where", done.returncode == 1 and "`-o FOLDER`" in done.stderr, done.stderr)
     done = rondo("launch", LINEFORM, "--fleet", folder / "nosuch.toml", "--json")
     check("launch: a fleet that does not exist", done.returncode == 1 and json.loads(done.stdout)["diagnostics"], done.stdout)
 
@@ -278,7 +433,10 @@ def refusals(folder):
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        for part in (refusals, fleets, logs, altered, lambda f: killed(f, "evict"), lambda f: killed(f, "halt"), interrupted, doctor, vendors, mistakes):
+        parts = {"refusals": refusals, "fleets": fleets, "simulated_time": simulated_time, "adapters": adapters, "secured": secured, "logs": logs,
+                 "altered": altered, "evict": lambda f: killed(f, "evict"), "halt": lambda f: killed(f, "halt"), "interrupted": interrupted,
+                 "doctor": doctor, "vendors": vendors, "mistakes": mistakes}
+        for part in [parts[word] for word in sys.argv[2:]] or parts.values():
             part(folder)
     print(f"{len(problems)} problems")
     return 1 if problems else 0

@@ -251,6 +251,16 @@ class Reader : Tables {
       Wrong(At(*t.get("namespace")), "a namespace has letters, digits, `_` and `/`");
   }
 
+  // Where its own odometry begins: where it starts, or at a point.
+  std::optional<Origin> ReadOrigin(const toml::table& t, const FleetRobot& robot) {
+    const toml::node* node = t.get("origin");
+    if (node == nullptr) return std::nullopt;
+    if (node->value<std::string>() == "start") return Origin{robot.position, robot.yaw};
+    if (!node->is_string()) return Origin{ReadPoint(t, "origin", {}, false, {}), 0};
+    Wrong(At(*node), "`origin` must be a point, `[x, y, z]`, or \"start\"");
+    return std::nullopt;
+  }
+
   void Numbers(const toml::table& t, const char* table, std::map<std::string, double>& values) {
     const auto* numbers = Table(t, table);
     if (numbers == nullptr) return;
@@ -265,7 +275,7 @@ class Reader : Tables {
     ForEach(root, "robot", [&](const toml::table& t) {
       Known(t,
             {"name", "model", "from", "position", "yaw", "parameters", "initial", "count", "columns", "step",
-             "row_step", "address", "namespace"},
+             "row_step", "address", "namespace", "origin"},
             "a robot");
       FleetRobot robot;
       robot.span = At(t);
@@ -292,6 +302,7 @@ class Reader : Tables {
         const size_t row = i / columns;
         for (size_t k = 0; k < 3; ++k)
           robot.position[k] += static_cast<double>(column) * step[k] + static_cast<double>(row) * row_step[k];
+        robot.origin = ReadOrigin(t, robot);
         if (!names.insert(robot.name).second)
           Wrong(robot.span, fmt::format("there are two robots `{}`", robot.name));
         fleet_.robots.push_back(robot);

@@ -28,6 +28,12 @@ enum class Policy : uint8_t {
 /// Makes a body, at no place yet.
 using BodyFactory = std::function<std::unique_ptr<Body>()>;
 
+/// Is where the frame of a robot's own odometry lies in the frame of the fleet.
+struct Origin {
+  Point position{};
+  double yaw = 0;
+};
+
 /// Describes one robot of the fleet.
 struct FleetRobot {
   std::string name;
@@ -41,6 +47,7 @@ struct FleetRobot {
   std::string address;  ///< of the machine that it is, for `profile = "wifi"`; empty: not said
   std::string
       node_namespace;  ///< of its topics, without the `/` in front; its name, unless the fleet says otherwise
+  std::optional<Origin> origin;  ///< of what it measures itself; nothing: `/tf` says where that is
   diag::Span span;
   BodyFactory make;
 };

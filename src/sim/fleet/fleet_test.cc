@@ -233,7 +233,60 @@ namespace = "/hall/a"
   EXPECT_EQ(Reading(kRobot).fleet.robots[0].node_namespace, "robot0");
 }
 
+TEST(Fleet, PortsMayBeJointsAutopilotsAndLibraries) {
+  const Reading reading(R"(
+[ros]
+use_sim_time = true
+keys = "keys"
+[ports]
+psn = { px4 = "fmu", system = 3 }
+reached = { nav2 = "navigate_to_pose/_action/status" }
+elbow = { joint_states = "joint_states", joint = "elbow_joint", reliable = true, transient_local = true, depth = 3 }
+bend = { joint_trajectory = "arm/joint_trajectory", joint = "elbow_joint", within = 0.5 }
+charge = { adapter = "./libbattery.so", with = "/dev/ttyUSB0" }
+[[robot]]
+name = "a"
+model = "car"
+position = [1, 2, 0]
+yaw = 0.5
+count = 2
+origin = "start"
+[[robot]]
+name = "b"
+model = "car"
+position = [9, 9, 0]
+origin = [1, 2, 3]
+)");
+  EXPECT_TRUE(reading.diagnostics.all().empty());
+  const FleetRos& ros = reading.fleet.ros;
+  EXPECT_TRUE(ros.use_sim_time);
+  EXPECT_EQ(ros.keys, "keys");
+  EXPECT_EQ(ros.ports.at("psn").via, PortVia::kPx4);
+  EXPECT_EQ(ros.ports.at("psn").system, 3);
+  EXPECT_FALSE(ros.ports.at("psn").reliable.has_value());
+  EXPECT_EQ(ros.ports.at("reached").via, PortVia::kNav2);
+  const FleetPort& elbow = ros.ports.at("elbow");
+  EXPECT_EQ(elbow.joint, "elbow_joint");
+  EXPECT_EQ(elbow.reliable, true);
+  EXPECT_EQ(elbow.transient_local, true);
+  EXPECT_EQ(elbow.depth, 3U);
+  EXPECT_EQ(ros.ports.at("bend").within, 0.5);
+  EXPECT_EQ(ros.ports.at("charge").via, PortVia::kAdapter);
+  EXPECT_EQ(ros.ports.at("charge").options, "/dev/ttyUSB0");
+  // Each begins where it starts.
+  EXPECT_EQ(reading.fleet.robots[1].origin->position, (Point{2, 2, 0}));
+  EXPECT_EQ(reading.fleet.robots[1].origin->yaw, 0.5);
+  EXPECT_EQ(reading.fleet.robots[2].origin->position, (Point{1, 2, 3}));
+  EXPECT_FALSE(Reading(kRobot).fleet.robots[0].origin.has_value());
+}
+
 TEST(Fleet, MistakesAboutTopicsHaveAPlace) {
+  EXPECT_NE(MistakeIn("[ports]\nelbow = { joint_states = \"a\" }").find(": `elbow` needs the name of its joint"),
+            std::string::npos);
+  EXPECT_NE(MistakeIn("[ports]\npsn = { px4 = \"a\", stamped = true }").find("a port by `px4` has no `stamped`"),
+            std::string::npos);
+  EXPECT_EQ(Reading("[[robot]]\nmodel = \"car\"\nposition = [0, 0, 0]\norigin = \"home\"\n").Mistake(),
+            "\"home\": `origin` must be a point, `[x, y, z]`, or \"start\"");
   EXPECT_EQ(MistakeIn("[ros]\ndomain = 300"), "300: `domain` must lie between 0 and 232");
   EXPECT_EQ(MistakeIn("[ros]\nprofile = \"radio\""), "\"radio\": `profile` cannot be this");
   EXPECT_EQ(MistakeIn("[ports]\npsn = \"odom\""),

@@ -60,14 +60,13 @@ void Tables::Wrong(Span span, std::string message) {
   diagnostics_.Report(Kind::kFleetValue, span, std::move(message));
 }
 
-void Tables::Known(const toml::table& table, std::initializer_list<const char*> keys, const char* what) {
+void Tables::Known(const toml::table& table, const std::vector<std::string>& keys, std::string_view what) {
   for (const auto& [key, node] : table) {
-    if (std::any_of(keys.begin(), keys.end(), [&](const char* k) { return key.str() == k; })) continue;
+    if (std::any_of(keys.begin(), keys.end(), [&](const std::string& k) { return key.str() == k; })) continue;
     auto& report = diagnostics_.Report(Kind::kFleetValue, At(key.source()),
                                        fmt::format("{} has no `{}`", what, key.str()));
-    const std::vector<std::string> all(keys.begin(), keys.end());
-    const std::string near = lang::Suggest(key.str(), all);
-    report.Help(near.empty() ? fmt::format("it may have {}", fmt::join(all, ", "))
+    const std::string near = lang::Suggest(key.str(), keys);
+    report.Help(near.empty() ? fmt::format("it may have {}", fmt::join(keys, ", "))
                              : fmt::format("did you mean `{}`?", near));
   }
 }

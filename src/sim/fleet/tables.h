@@ -26,7 +26,7 @@ class Tables {
   void Wrong(diag::Span span, std::string message);
 
   /// Reports every key of a table that is none of these; `what` names the table.
-  void Known(const toml::table& table, std::initializer_list<const char*> keys, const char* what);
+  void Known(const toml::table& table, const std::vector<std::string>& keys, std::string_view what);
   /// Returns the table of this name; nullptr if there is none.
   const toml::table* Table(const toml::table& parent, const char* name);
   /// Calls `visit` for each table of `[[name]]`.

@@ -80,7 +80,7 @@ class Way : public Transport {
   }
 
  private:
-  std::string Topic(const std::string& whom) const { return fmt::format("/rondo/{}/{}", fleet_.name, whom); }
+  std::string Topic(const std::string& whom) const { return FramesTopic(fleet_.name, whom); }
 
   void Arrives(std::string_view bytes) {
     // As `Datagram`, without a copy more than needed.
@@ -129,6 +129,10 @@ class Way : public Transport {
 };
 
 }  // namespace
+
+std::string FramesTopic(const std::string& fleet, const std::string& whom) {
+  return fmt::format("/rondo/{}/{}", fleet, whom);
+}
 
 base::Result<std::unique_ptr<Transport>> Connect(Participant& participant, size_t node, const Fleet& fleet) {
   auto way = std::make_unique<Way>(participant, node, fleet);

@@ -18,6 +18,9 @@ struct Fleet {
   uint32_t self = 0;
 };
 
+/// Returns the topic of what a robot is told, in full; `whom`: its name, or `all`.
+std::string FramesTopic(const std::string& fleet, const std::string& whom);
+
 /// Returns the way from and to one robot. The thread that uses it sends by itself: writers keep nothing for anybody, and the
 /// sockets of the library do not block. Threads of the library receive (docs/adr/0025-threads-of-a-robot.md).
 /// @param participant  outlives it; `node`: of that participant.
