@@ -59,14 +59,14 @@ class Examination {
     // What was asked last is on its way.
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     const auto endpoints = participant.value()->Endpoints();
-    const auto nodes = participant.value()->Nodes();
+    nodes_ = participant.value()->Nodes();
     const dds::Guid self = participant.value()->guid();
     subscriptions_.clear();
     questions_.clear();
     domain_ = network.domain;
     Robots();
     Topics(endpoints, self);
-    Qualities(endpoints, nodes, self);
+    Qualities(endpoints, self);
     return std::move(health_);
   }
 
@@ -253,9 +253,7 @@ class Examination {
               fmt::format("is the driver running? Or is `{}` on another topic: `[ports]` in the fleet file",
                           w.topic.port));
       } else if (w.sensor && w.count == 0 && w.topic.carries != Carries::kGoalStatus) {
-        Wrong(
-            name, fmt::format("nothing comes on {}, though somebody would send there", w.topic.name),
-            "is it a lifecycle node that is not active (`ros2 lifecycle get NODE`), or a sensor that stands still?");
+        Silent(name, w, endpoints);
       } else if (!fleet_.ros.use_sim_time && w.behind &&
                  std::fabs(*w.behind) > std::max(0.1, w.topic.max_age)) {
         Wrong(name,
@@ -266,9 +264,26 @@ class Examination {
     }
   }
 
+  // Nodes with a life cycle say on a topic of their own when they change, and send nothing before they are active.
+  void Silent(const std::string& name, const Watched& w, const std::vector<dds::Endpoint>& endpoints) {
+    for (const dds::Endpoint& e : endpoints) {
+      if (!e.writes || !Heard(e, w)) continue;
+      const std::string node = NodeOf(nodes_, e);
+      const bool lives = std::ranges::any_of(endpoints, [&](const dds::Endpoint& o) {
+        return o.writes && o.topic == node + "/transition_event";
+      });
+      if (!lives) continue;
+      return Wrong(
+          name,
+          fmt::format("nothing comes on {}: {} is a lifecycle node, and not active", w.topic.name, node),
+          fmt::format("`ros2 lifecycle set {} activate`, or `configure` before it", node));
+    }
+    Wrong(name, fmt::format("nothing comes on {}, though somebody would send there", w.topic.name),
+          "a sensor that stands still, or a network that lets nothing through");
+  }
+
   // Readers that no writer can serve.
-  void Qualities(const std::vector<dds::Endpoint>& endpoints,
-                 const std::vector<dds::Participant::Node>& nodes, const dds::Guid& self) {
+  void Qualities(const std::vector<dds::Endpoint>& endpoints, const dds::Guid& self) {
     std::set<std::string> said;
     for (const dds::Endpoint& w : endpoints) {
       const bool ours =
@@ -282,7 +297,7 @@ class Examination {
         if (r.qos.transient_local && !w.qos.transient_local)
           why = "the reader wants earlier messages, and the writer keeps none (durability)";
         const std::string what =
-            fmt::format("{}: {} does not hear {}: {}", w.topic, NodeOf(nodes, r), NodeOf(nodes, w), why);
+            fmt::format("{}: {} does not hear {}: {}", w.topic, NodeOf(nodes_, r), NodeOf(nodes_, w), why);
         if (!why.empty() && said.insert(what).second)
           Wrong("", what, "give both the same quality of service");
       }
@@ -302,6 +317,7 @@ class Examination {
   const sim::Fleet& fleet_;
   const std::string& agreement_;
   std::vector<sim::Port> ports_;
+  std::vector<dds::Participant::Node> nodes_;
   uint32_t domain_ = 0;
   size_t asked_ = 0;
   Health health_;

@@ -73,7 +73,8 @@ TEST_F(Keystores, WhatCannotBeReadIsSaid) {
   std::ofstream(folder_ / "private/ca.key.pem") << "no key";
   const auto failed = MakeKeystore(folder_.string(), {}, texts_);
   ASSERT_FALSE(failed.ok());
-  EXPECT_NE(failed.error().message.find("the key cannot be read"), std::string::npos) << failed.error().message;
+  EXPECT_NE(failed.error().message.find("the key cannot be read"), std::string::npos)
+      << failed.error().message;
 }
 
 }  // namespace

@@ -58,8 +58,12 @@ void Recorder::World(const Fleet& fleet) {
 void Recorder::Pose(double time, size_t robot, const Body& body) {
   if (!on()) return;
   const uint64_t at = Nanoseconds(time);
-  writer_->Message(Channel("/" + fleet_.robots[robot].name + "/pose", trace::kPoseStamped, "cdr"), at,
-                   trace::PoseStamped(at, {body.position(), body.rotation()}));
+  const std::string& name = fleet_.robots[robot].name;
+  const trace::Pose pose{body.position(), body.rotation()};
+  writer_->Message(Channel("/" + name + "/pose", trace::kPoseStamped, "cdr"), at,
+                   trace::PoseStamped(at, pose));
+  // What scans lie in.
+  writer_->Message(Channel("/tf", trace::kTransforms, "cdr"), at, trace::Transform(at, name, pose));
 }
 
 void Recorder::Path(double time, size_t robot, const std::vector<Point>& path) {

@@ -15,7 +15,8 @@ namespace rondo::sim {
 /// Writes what happens in a simulation to a trace; does nothing without one.
 ///
 /// Topics: `/rondo/run` (once, JSON: everything that a replay needs), `/rondo/round` and `/rondo/event`
-/// (JSON), `/ROBOT/pose` (PoseStamped), `/ROBOT/path` (Path), `/ROBOT/scan` (LaserScan), `/world`
+/// (JSON), `/ROBOT/pose` (PoseStamped), `/tf`
+/// (TFMessage: where the frame ROBOT is), `/ROBOT/path` (Path), `/ROBOT/scan` (LaserScan), `/world`
 /// (MarkerArray), `/map` (OccupancyGrid).
 class Recorder {
  public:

@@ -26,6 +26,9 @@ inline void PutText(std::string& out, std::string_view text) {
   out.append(text);
 }
 
+/// Returns the CRC-32 (IEEE 802.3) of bytes, or of those that gave `before` and these behind them.
+uint32_t Checksum(std::string_view bytes, uint32_t before = 0);
+
 /// Reads from the front of `bytes`, which must outlive it. Once the bytes do not suffice, it returns nothing
 /// and stays where it is.
 class Cursor {

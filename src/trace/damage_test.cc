@@ -65,7 +65,8 @@ std::string Chunk(std::string_view records, std::string_view compression = "") {
 }
 
 std::string Whole(const std::string& records) {
-  return std::string(kMagic) + records + Record(0x0F, std::string(4, '\0')) + std::string(kMagic);
+  return std::string(kMagic) + records + Record(0x0F, std::string(4, '\0')) +
+         Record(0x02, std::string(20, '\0')) + std::string(kMagic);
 }
 
 // The contents of all messages of a file, or nothing if it is refused.
@@ -201,6 +202,24 @@ TEST_F(TraceFiles, MessagesHaveTheTopicSchemaAndEncodingOfTheirChannel) {
                 return true;
               }).ok());
   EXPECT_EQ(all, (Texts{"/b " + std::string(kPath.name) + " cdr", "/a json json"}));
+}
+
+TEST_F(TraceFiles, EveryFlippedBitIsNoticed) {
+  Writer writer = Writer::Open(Path("a.mcap")).value();
+  const uint16_t a = writer.Channel("/rondo/event", kRecord, "json");
+  const uint16_t b = writer.Channel("/b", kPath, "cdr");
+  writer.Message(a, 5, R"({"event":"collision"})");
+  writer.Message(b, 6, trace::Path(6, {{1, 2, 3}}));
+  writer.Keep();
+  writer.Message(a, 7, "{}");
+  ASSERT_TRUE(writer.Finish().ok());
+  const std::string good = ReadTrace(Path("a.mcap")).value();
+  ASSERT_EQ(Contents(good)->size(), 3U);
+  for (size_t i = 0; i < good.size(); ++i) {
+    std::string bad = good;
+    bad[i] = static_cast<char>(bad[i] ^ (1 << (i % 8)));
+    EXPECT_FALSE(Contents(bad)) << i;
+  }
 }
 
 TEST(RosMessages, EachTruncationOfAPoseIsRefused) {

@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 
+constexpr size_t kRecordHead = 9;  // bytes: its kind, and its length
+
 class Reader {
  public:
   Reader(std::string_view file, const std::function<bool(const Message&)>& visit, bool left)
@@ -30,6 +32,7 @@ class Reader {
     if (!Records(cursor, 0)) return base::Error{problem_};
     if (!more_) return true;
     if (!ended_) return base::Error{"the file has no end record"};
+    if (!Summary(cursor.rest())) return base::Error{problem_};
     return true;
   }
 
@@ -38,6 +41,19 @@ class Reader {
     const auto at = static_cast<size_t>(rest.data() - file_.data());
     problem_ = fmt::format("{} at byte {}", what, at);
     return false;
+  }
+
+  // 0 stands for no checksum.
+  static bool Sound(uint32_t sum, std::string_view bytes) { return sum == 0 || Checksum(bytes) == sum; }
+
+  // What lies behind the data: an index, and at the end a footer with a checksum of it.
+  bool Summary(std::string_view summary) {
+    constexpr size_t kFooter = kRecordHead + 8 + 8 + 4;
+    if (summary.size() < kFooter || summary[summary.size() - kFooter] != 0x02)
+      return Bad("the footer is damaged", summary);
+    Cursor sum(summary.substr(summary.size() - 4));
+    return Sound(*sum.Take<uint32_t>(), summary.substr(0, summary.size() - 4)) ||
+           Bad("the checksum of the index is another: the file is damaged", summary);
   }
 
   bool Records(Cursor& cursor, int depth) {
@@ -95,12 +111,19 @@ class Reader {
         const auto records = length ? c.Take(*length) : std::nullopt;
         if (!start || !end || !size || !crc || !compression || !records) return false;
         if (!compression->empty()) return Bad("a compressed chunk, which Rondo does not read,", content);
+        if (!Sound(*crc, *records))
+          return Bad("the checksum of a chunk is another: the file is damaged", content);
         Cursor inner(*records);
         return Records(inner, depth + 1);
       }
-      case 0x0F:  // the data ends here; the rest is an index
-        ended_ = depth == 0;
-        return depth == 0;
+      case 0x0F: {  // the data ends here; the rest is an index
+        const auto sum = c.Take<uint32_t>();
+        if (depth > 0 || !sum) return false;
+        ended_ = true;
+        const auto before = static_cast<size_t>(content.data() - file_.data()) - kRecordHead;
+        return Sound(*sum, file_.substr(0, before)) ||
+               Bad("the checksum of the data is another: the file is damaged", content);
+      }
       default:
         return true;
     }

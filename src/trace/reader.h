@@ -20,9 +20,10 @@ struct Message {
 };
 
 /// Calls `visit` for each message in the order of the file, until it returns false. Chunks must not be
-/// compressed (Rondo's are not); checksums are not compared.
+/// compressed (Rondo's are not). Messages of a chunk whose checksum is another are not visited.
 ///
-/// @error with the offset in bytes, if the file is not a complete MCAP file (MCAP specification, version 0).
+/// @error with the offset in bytes, if the file is not a complete MCAP file (MCAP specification, version 0), or a checksum
+/// in it is not that of its bytes.
 base::Result<bool> ForEachMessage(std::string_view file, const std::function<bool(const Message&)>& visit);
 /// Does the same with a file whose writer was killed: as far as its records are whole. @error if it is no MCAP file, or
 /// a whole record is damaged.

@@ -3,6 +3,7 @@
 #include "ros/geometry_msgs.h"
 #include "ros/nav_msgs.h"
 #include "ros/sensor_msgs.h"
+#include "ros/tf2_msgs.h"
 #include "ros/visualization_msgs.h"
 
 namespace rondo::trace {
@@ -14,8 +15,11 @@ const Schema kPath = SchemaOf(ros::nav_msgs::Path::kMessage);
 const Schema kLaserScan = SchemaOf(ros::sensor_msgs::LaserScan::kMessage);
 const Schema kMarkerArray = SchemaOf(ros::visualization_msgs::MarkerArray::kMessage);
 const Schema kOccupancyGrid = SchemaOf(ros::nav_msgs::OccupancyGrid::kMessage);
+const Schema kTransforms = SchemaOf(ros::tf2_msgs::TFMessage::kMessage);
 
-Schema SchemaOf(const ros::Message& message) { return {message.name, "ros2msg", message.definition}; }
+Schema SchemaOf(const ros::Message& message) {
+  return {message.name, "ros2msg", message.definition, message.hash};
+}
 
 namespace {
 
@@ -45,6 +49,16 @@ std::string PoseStamped(uint64_t time, const Pose& pose) {
   ros::geometry_msgs::PoseStamped m;
   m.header = HeaderOf(time, "world");
   m.pose = PoseOf(pose);
+  return Serialised(m);
+}
+
+std::string Transform(uint64_t time, const std::string& frame, const Pose& pose) {
+  ros::tf2_msgs::TFMessage m;
+  auto& t = m.transforms.emplace_back();
+  t.header = HeaderOf(time, "world");
+  t.child_frame_id = frame;
+  t.transform.translation = {pose.position[0], pose.position[1], pose.position[2]};
+  t.transform.rotation = PoseOf(pose).orientation;
   return Serialised(m);
 }
 

@@ -27,9 +27,12 @@ extern const Schema kLaserScan;
 extern const Schema kMarkerArray;
 extern const Schema kPath;
 extern const Schema kOccupancyGrid;
+extern const Schema kTransforms;
 
 /// Returns a geometry_msgs/msg/PoseStamped.
 std::string PoseStamped(uint64_t time, const Pose& pose);
+/// Returns a tf2_msgs/msg/TFMessage that says where a frame is.
+std::string Transform(uint64_t time, const std::string& frame, const Pose& pose);
 
 /// Is what a laser scanner saw in one turn. Angles in radians, in the plane of its own frame; ranges in
 /// metres.

@@ -45,7 +45,7 @@ base::Result<Writer> Writer::Open(const std::string& path) {
   if (writer.file_ == nullptr) return base::Error{std::strerror(errno)};
   writer.Write(kMagic);
   std::string header;
-  PutText(header, "");
+  PutText(header, "ros2");
   PutText(header, "rondo");
   std::string record;
   Record(record, kHeader, header);
@@ -59,6 +59,7 @@ Writer::Writer(Writer&& other) noexcept
       failed_(other.failed_),
       kept_(other.kept_),
       offset_(other.offset_),
+      sum_(other.sum_),
       schemas_(std::move(other.schemas_)),
       channels_(std::move(other.channels_)),
       chunk_(std::move(other.chunk_)),
@@ -80,6 +81,7 @@ Writer::~Writer() {
 void Writer::Write(std::string_view bytes) {
   failed_ = failed_ || std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size();
   offset_ += bytes.size();
+  sum_ = Checksum(bytes, sum_);
 }
 
 void Writer::Record(std::string& out, uint8_t op, std::string_view content) {
@@ -107,7 +109,14 @@ std::string Writer::ChannelRecord(uint16_t id) const {
   Put<uint16_t>(content, channel.schema);
   PutText(content, channel.topic);
   PutText(content, channel.encoding);
-  Put<uint32_t>(content, 0);  // no metadata
+  std::string metadata;
+  if (channel.schema != 0 && !schemas_[channel.schema - 1U].hash.empty()) {
+    PutText(metadata, "offered_qos_profiles");
+    PutText(metadata, "");
+    PutText(metadata, "topic_type_hash");
+    PutText(metadata, schemas_[channel.schema - 1U].hash);
+  }
+  PutText(content, metadata);
   std::string record;
   Record(record, kChannel, content);
   return record;
@@ -118,7 +127,7 @@ uint16_t Writer::Channel(const std::string& topic, const Schema& schema, const s
   for (size_t i = 0; i < schemas_.size(); ++i) {
     if (schemas_[i].name == schema.name) id = static_cast<uint16_t>(i + 1);
   }
-  if (id == 0) {
+  if (id == 0 && !schema.name.empty()) {
     schemas_.push_back(schema);
     id = static_cast<uint16_t>(schemas_.size());
     chunk_ += SchemaRecord(id);
@@ -162,8 +171,8 @@ void Writer::Flush() {
   Put<uint64_t>(content, chunk_start_);
   Put<uint64_t>(content, chunk_end_);
   Put<uint64_t>(content, chunk_.size());
-  Put<uint32_t>(content, 0);  // no checksum
-  PutText(content, "");       // no compression
+  Put<uint32_t>(content, Checksum(chunk_));
+  PutText(content, "");  // no compression
   Put<uint64_t>(content, chunk_.size());
   content += chunk_;
   std::string record;
@@ -198,10 +207,11 @@ base::Result<bool> Writer::Finish() {
   Flush();
   std::string record;
   std::string content;
-  Put<uint32_t>(content, 0);
+  Put<uint32_t>(content, sum_);
   Record(record, kDataEnd, content);
   Write(record);
   const uint64_t summary = offset_;
+  sum_ = 0;
   std::string offsets;
   const auto group = [&](uint8_t op, uint64_t start) {
     if (offset_ == start) return;
@@ -262,9 +272,11 @@ base::Result<bool> Writer::Finish() {
   content.clear();
   Put<uint64_t>(content, summary);
   Put<uint64_t>(content, offsets_start);
-  Put<uint32_t>(content, 0);  // no checksum
+  // The summary with what this record begins with.
   record.clear();
-  Record(record, kFooter, content);
+  Record(record, kFooter, content + std::string(4, '\0'));
+  record.resize(record.size() - 4);
+  Put<uint32_t>(record, Checksum(record, sum_));
   Write(record);
   Write(kMagic);
   failed_ = std::fclose(std::exchange(file_, nullptr)) != 0 || failed_;

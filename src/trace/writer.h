@@ -14,16 +14,18 @@ namespace rondo::trace {
 
 /// Says how the messages of a channel are written. Its texts must outlive the writer.
 struct Schema {
-  std::string_view name;      ///< such as `geometry_msgs/msg/PoseStamped`
-  std::string_view encoding;  ///< of `text`: `ros2msg` or `jsonschema`
-  std::string_view text;      ///< the definition itself
+  std::string_view name;       ///< such as `geometry_msgs/msg/PoseStamped`; empty: they say it themselves
+  std::string_view encoding;   ///< of `text`: `ros2msg` or `jsonschema`
+  std::string_view text;       ///< the definition itself
+  std::string_view hash = {};  ///< of types of ROS: RIHS01
 };
 
 /// Is for what Rondo itself says of a run: any JSON object, on the topics `/rondo/...`.
-inline constexpr Schema kRecord{"rondo.Record", "jsonschema", R"({"type":"object"})"};
+/// Without a schema: readers of ROS know none but those of messages.
+inline constexpr Schema kRecord{"", "", ""};
 
-/// Writes a record of a run as MCAP (MCAP specification, version 0): chunks without compression, an index and
-/// statistics behind them, so that the usual tools can read and seek. The same calls give the same bytes.
+/// Writes a record of a run as MCAP (MCAP specification, version 0; profile `ros2`): chunks without compression, an index and
+/// statistics behind them, so that the usual tools can read and seek, and checksums of all. The same calls give the same bytes.
 ///
 /// The file is written beside its name, with `.partial` behind it, and gets its name in `Finish`; without
 /// that, nothing of it stays.
@@ -73,6 +75,7 @@ class Writer {
   std::FILE* file_ = nullptr;
   bool failed_ = false, kept_ = false;
   uint64_t offset_ = 0;
+  uint32_t sum_ = 0;             // CRC-32 of what was written since the file, or its summary, began
   std::vector<Schema> schemas_;  // texts are static
   std::vector<KnownChannel> channels_;
   std::string chunk_;

@@ -9,6 +9,7 @@ import os
 import pathlib
 import random
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -20,6 +21,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RONDO = pathlib.Path(sys.argv[1]).resolve()
 DRIVER = RONDO.parent / "fastdds_driver"
 LIBRARIES = RONDO.parent.parent / "adapters"
+SLEEPER = RONDO.parent / "sleeping_node"
+RUST = ROOT / "build/rust/release/rust_driver"
 PYTHON = ROOT / "build/python/bin/python3"
 LINEFORM = str(ROOT / "examples/koord/lineform")
 TURTLES = ROOT / "examples/koord/turtlebots.toml"
@@ -245,22 +248,39 @@ def logs(folder):
     at = bytes_.index(b'"store":"', bytes_.index(b'"round":7,'))
     end = bytes_.index(b'"', at + 9)
     spot = at + 9 + (end - at - 9) // 2 // 2 * 2
-    other = bytearray(bytes_)
+    other = bytearray(unsealed(bytes_))
     other[spot + 1] = ord("1") if other[spot + 1] != ord("1") else ord("2")
     bad = folder / "bad.mcap"
     bad.write_bytes(other)
     done = rondo("replay", names[0], names[1], bad, names[3], "--json")
     check("logs: robots disagree", done.returncode == 1, done.stdout, done.stderr)
+    flipped = bytearray(bytes_)
+    flipped[len(flipped) // 2] ^= 1
+    bad.write_bytes(flipped)
+    done = rondo("replay", names[0], names[1], bad, names[3])
+    check("logs: a bit is another", done.returncode == 1 and "checksum" in done.stderr, done.stdout, done.stderr)
     cut = folder / "cut.mcap"
     cut.write_bytes(bytes_[: len(bytes_) // 2])
     done = rondo("replay", names[0], names[1], cut, names[3])
     check("logs: one is cut off", done.returncode == 3 and "cut off" in done.stdout, done.stdout, done.stderr)
 
 
+def unsealed(file):
+    """An MCAP file without checksums: who changes it means to."""
+    out, at = bytearray(file), 8
+    while at + 9 <= len(file) - 8:
+        kind, size = file[at], int.from_bytes(file[at + 1:at + 9], "little")
+        crc = {0x06: at + 9 + 24, 0x0F: at + 9, 0x02: at + 9 + 16}.get(kind)
+        if crc is not None:
+            out[crc:crc + 4] = bytes(4)
+        at += 9 + size
+    return bytes(out)
+
+
 def altered(folder):
     """Logs whose lines are changed: what is wrong is found, or the file refused; nothing crashes."""
     names = sorted((folder / "logs").glob("*.mcap"))
-    bytes_ = names[1].read_bytes()
+    bytes_ = unsealed(names[1].read_bytes())
 
     def judged(old, new, count=1):
         check(f"{old} is in the log", old in bytes_)
@@ -330,6 +350,12 @@ def doctor(folder):
           done.stdout)
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=60)
+    (folder / "solo.koord").write_text(SOLO)
+    (folder / "solo.toml").write_text(SOLO_FLEET)
+    sleeper = subprocess.Popen([str(SLEEPER), str(DOMAIN), "solo", "6"])
+    done = rondo("doctor", folder / "solo", "--seconds", 1.5)
+    check("doctor: a node that is not active", "/solo/localizer is a lifecycle node, and not active" in done.stdout, done.stdout)
+    sleeper.kill()
     done = rondo("doctor")
     check("doctor: of this machine", done.returncode == 0, done.stdout)
     done = rondo("doctor", env=dict(os.environ, ROS_DOMAIN_ID="1000"))
@@ -373,6 +399,68 @@ def vendors(folder):
                            text=True, timeout=60)
     process.communicate(timeout=60)
     check("another Cyclone DDS hears where a robot is", re.match(r"\d\d+ map solo/base_link \S+ \S+", heard.stdout), heard.stdout, heard.stderr)
+
+
+def rust(folder):
+    if not RUST.exists():
+        return print("note: the driver in Rust is not there: `./dev nightly` makes it")
+    (folder / "solo.koord").write_text(SOLO)
+    (folder / "solo.toml").write_text(SOLO_FLEET)
+    process = subprocess.Popen([str(RONDO), "run", str(folder / "solo"), "--robot", "solo", "--duration", "4", "--json"], stdout=subprocess.PIPE)
+    driver = subprocess.run([str(RUST), str(DOMAIN), "solo", "9"], capture_output=True, text=True, timeout=60)
+    report = json.loads(process.communicate(timeout=60)[0])
+    check("a driver in Rust drives a robot", report["status"] == 0 and report["rounds"] >= 30 and report["blind"] == 0, report)
+    return check("a driver in Rust is told where to go", re.fullmatch(r"goals [1-9]\d* at 3.000 2.500 in map\n", driver.stdout), driver.stdout, driver.stderr)
+
+
+def wire(folder):
+    """What Wireshark's dissector sees on the wire, and what `rosbags` reads of a trace and a log."""
+    (folder / "solo.koord").write_text(SOLO)
+    (folder / "solo.toml").write_text(SOLO_FLEET)
+    capture, trace = folder / "wire.pcapng", folder / "wire.mcap"
+    first = 7400 + 250 * DOMAIN
+    shark = None
+    if shutil.which("tshark"):
+        shark = subprocess.Popen(["tshark", "-q", "-i", "lo", "-w", capture, "-f", f"udp portrange {first}-{first + 249}"],
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        time.sleep(1.5)
+    done = rondo("launch", folder / "solo", "--duration", 3, "--trace", trace, "--logs", folder / "solo_logs")
+    check("wire: the fleet runs", done.returncode == 0, done.stdout, done.stderr)
+    if shark is None or shark.poll() is not None:
+        print("note: skipped: nobody may listen to the wire here, or there is no tshark")
+    else:
+        shark.send_signal(signal.SIGINT)
+        shark.communicate(timeout=30)
+
+        def fields(only, *names):
+            shown = subprocess.run(["tshark", "-r", capture, "-Y", only, "-T", "fields", *(word for name in names for word in ("-e", name))],
+                                   capture_output=True, text=True, timeout=120)
+            return [line.split("\t") for line in shown.stdout.splitlines()]
+        told = {pair for names, types in fields("rtps.param.topicName", "rtps.param.topicName", "rtps.param.typeName")
+                for pair in zip(names.split(","), types.split(","))}
+        for pair in (("rt/solo/odom", "nav_msgs::msg::dds_::Odometry_"), ("rt/solo/goal_pose", "geometry_msgs::msg::dds_::PoseStamped_"),
+                     ("rt/tf", "tf2_msgs::msg::dds_::TFMessage_"), ("ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_")):
+            check(f"wire: {pair[0]} is announced", pair in told, sorted(told))
+        kinds = {kind for (line,) in fields("rtps.param.serialize.encap_kind", "rtps.param.serialize.encap_kind") for kind in line.split(",")}
+        check("wire: data is CDR, parameters are lists", kinds == {"0x0001", "0x0003"}, kinds)
+        check("wire: nothing is malformed", fields("rtps && _ws.malformed", "frame.number") == [])
+    for file, wanted in ((trace, {"geometry_msgs/msg/PoseStamped", "tf2_msgs/msg/TFMessage"}), (folder / "solo_logs/solo.mcap", set())):
+        read = subprocess.run([str(PYTHON), "-c", ROSBAGS, str(file)], capture_output=True, text=True, timeout=60)
+        check(f"rosbags reads {file.name}", read.returncode == 0 and wanted <= set(read.stdout.split()), read.stdout, read.stderr)
+
+
+ROSBAGS = """
+import pathlib, sys
+from rosbags.rosbag2 import Reader
+from rosbags.typesys import Stores, get_typestore
+store = get_typestore(Stores.ROS2_JAZZY)
+with Reader(pathlib.Path(sys.argv[1])) as reader:
+    for count, (connection, _, data) in enumerate(reader.messages()):
+        if connection.msgtype.count('/') == 2:
+            store.deserialize_cdr(data, connection.msgtype)
+            print(connection.msgtype)
+assert count > 5
+"""
 
 
 FAULTS = SOLO.replace("        Motion.target = pos(3, 2.5, 0)", "        n = 1 / (n - n)").replace("Go:", "local:\n    int n = 0\nGo:")
@@ -435,7 +523,7 @@ def main():
         folder = pathlib.Path(name)
         parts = {"refusals": refusals, "fleets": fleets, "simulated_time": simulated_time, "adapters": adapters, "secured": secured, "logs": logs,
                  "altered": altered, "evict": lambda f: killed(f, "evict"), "halt": lambda f: killed(f, "halt"), "interrupted": interrupted,
-                 "doctor": doctor, "vendors": vendors, "mistakes": mistakes}
+                 "doctor": doctor, "vendors": vendors, "rust": rust, "wire": wire, "mistakes": mistakes}
         for part in [parts[word] for word in sys.argv[2:]] or parts.values():
             part(folder)
     print(f"{len(problems)} problems")

@@ -281,10 +281,12 @@ origin = [1, 2, 3]
 }
 
 TEST(Fleet, MistakesAboutTopicsHaveAPlace) {
-  EXPECT_NE(MistakeIn("[ports]\nelbow = { joint_states = \"a\" }").find(": `elbow` needs the name of its joint"),
-            std::string::npos);
-  EXPECT_NE(MistakeIn("[ports]\npsn = { px4 = \"a\", stamped = true }").find("a port by `px4` has no `stamped`"),
-            std::string::npos);
+  EXPECT_NE(
+      MistakeIn("[ports]\nelbow = { joint_states = \"a\" }").find(": `elbow` needs the name of its joint"),
+      std::string::npos);
+  EXPECT_NE(
+      MistakeIn("[ports]\npsn = { px4 = \"a\", stamped = true }").find("a port by `px4` has no `stamped`"),
+      std::string::npos);
   EXPECT_EQ(Reading("[[robot]]\nmodel = \"car\"\nposition = [0, 0, 0]\norigin = \"home\"\n").Mistake(),
             "\"home\": `origin` must be a point, `[x, y, z]`, or \"start\"");
   EXPECT_EQ(MistakeIn("[ros]\ndomain = 300"), "300: `domain` must lie between 0 and 232");

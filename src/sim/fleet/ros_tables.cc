@@ -78,8 +78,8 @@ void ReadPorts(Tables& tables, const toml::table& table, FleetRos& ros) {
       continue;
     }
     if (ways.size() > 1) {
-      tables.Wrong(tables.At(node), fmt::format("`{}` has two topics: `{}` and `{}`", name, ways[0]->word,
-                                                ways[1]->word));
+      tables.Wrong(tables.At(node),
+                   fmt::format("`{}` has two topics: `{}` and `{}`", name, ways[0]->word, ways[1]->word));
       continue;
     }
     FleetPort& p = ros.ports[name];
