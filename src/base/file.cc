@@ -30,11 +30,18 @@ Result<std::string> ReadFile(const std::filesystem::path& path, uint64_t largest
   return text;
 }
 
+Result<bool> MakeFolders(const std::filesystem::path& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure) return Error{failure.message()};
+  return true;
+}
+
 Result<bool> WriteFileAtomically(const std::filesystem::path& path, std::string_view text) {
   static std::atomic<unsigned> serial{0};
   std::error_code failure;
-  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failure);
-  if (failure) return Error{failure.message()};
+  if (path.has_parent_path() && !std::filesystem::exists(path.parent_path(), failure))
+    return Error{fmt::format("there is no folder `{}`", path.parent_path().string())};
   // A device or a folder must not be replaced.
   if (std::filesystem::exists(path, failure) && !std::filesystem::is_regular_file(path, failure))
     return Error{"it is not a regular file"};

@@ -13,10 +13,12 @@ namespace rondo::base {
 /// Returns the bytes of a file. @error when it cannot be read, is a folder, or has more than `largest` bytes.
 Result<std::string> ReadFile(const std::filesystem::path& path, uint64_t largest = uint64_t{64} << 20);
 
-/// Writes all of `text` or nothing: a temporary file beside `path` is renamed over it. Creates missing
-/// folders.
+/// Makes a folder, and those that it lies in, unless they are there. @error in the words of the system.
+Result<bool> MakeFolders(const std::filesystem::path& folder);
+
+/// Writes all of `text` or nothing: a temporary file beside `path` is renamed over it.
 ///
-/// @error when the file or a folder cannot be written; a file that was there before is then unchanged.
+/// @error when the file cannot be written, or its folder is not there; a file that was there before is then unchanged.
 Result<bool> WriteFileAtomically(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace rondo::base

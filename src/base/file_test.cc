@@ -13,6 +13,9 @@ std::filesystem::path Scratch() {
 TEST(File, WritesAndReadsBack) {
   const auto path = Scratch() / "deep" / "file.txt";
   const std::string text("a\0b\n", 4);
+  // No folder is made for a file.
+  EXPECT_NE(WriteFileAtomically(path, text).error().message.find("there is no folder"), std::string::npos);
+  ASSERT_TRUE(MakeFolders(path.parent_path()).ok());
   ASSERT_TRUE(WriteFileAtomically(path, text).ok());
   const auto read = ReadFile(path);
   ASSERT_TRUE(read.ok());

@@ -65,6 +65,7 @@ class Examination {
     questions_.clear();
     domain_ = network.domain;
     Robots();
+    if (fleet_.ros.use_sim_time) Clocks(endpoints, self);
     Topics(endpoints, self);
     Qualities(endpoints, self);
     return std::move(health_);
@@ -233,6 +234,17 @@ class Examination {
   }
 
   static bool Heard(const dds::Endpoint& e, const Watched& w) { return e.topic == w.topic.name; }
+
+  // One has to say what time it is, and not two.
+  void Clocks(const std::vector<dds::Endpoint>& endpoints, const dds::Guid& self) {
+    const auto clocks = std::ranges::count_if(endpoints, [&](const dds::Endpoint& e) {
+      return e.writes && e.topic == "/clock" && e.participant != self;
+    });
+    if (clocks == 0)
+      Wrong("", "nobody sends on /clock, and the fleet has `use_sim_time`", "is the simulator running?");
+    if (clocks > 1)
+      Wrong("", fmt::format("{} send on /clock", clocks), "time jumps between them: end all but one");
+  }
 
   // Topics that nobody says anything on, or that are something else.
   void Topics(const std::vector<dds::Endpoint>& endpoints, const dds::Guid& self) {

@@ -60,11 +60,11 @@ class Folder {
  public:
   explicit Folder(fs::path path) : path_(std::move(path)) {}
 
+  // A folder that is not there is made for its owner alone.
   void Make(const fs::path& folder) {
     std::error_code failed;
-    fs::create_directories(path_ / folder, failed);
-    // Keys are for their owner.
-    if (!failed) fs::permissions(path_ / folder, fs::perms::owner_all, failed);
+    const bool fresh = fs::create_directories(path_ / folder, failed);
+    if (!failed && fresh) fs::permissions(path_ / folder, fs::perms::owner_all, failed);
     if (failed && why_.empty())
       why_ = fmt::format("cannot use the folder `{}`: {}", (path_ / folder).string(), failed.message());
   }
@@ -83,6 +83,14 @@ class Folder {
     const auto written = base::WriteFileAtomically((path_ / file).string(), text);
     if (!written.ok())
       why_ = fmt::format("cannot write `{}`: {}", (path_ / file).string(), written.error().message);
+  }
+  // A key, which nobody else may read.
+  void WriteKey(const fs::path& file, const std::string& text) {
+    Write(file, text);
+    std::error_code failed;
+    if (why_.empty()) fs::permissions(path_ / file, fs::perms::owner_read | fs::perms::owner_write, failed);
+    if (failed && why_.empty())
+      why_ = fmt::format("cannot keep `{}` from others: {}", (path_ / file).string(), failed.message());
   }
   void Sign(const Authority& authority, const fs::path& file, const std::string& text) {
     const auto signature = authority.Sign(text);
@@ -112,7 +120,7 @@ base::Result<Authority> OwnerOf(Folder& folder, bool& fresh) {
   // What `ros2 security` looks for when it makes keys for nodes of ROS.
   for (const char* name : {"ca", "identity_ca", "permissions_ca"}) {
     folder.Write(fmt::format("public/{}.cert.pem", name), identity.certificate);
-    folder.Write(fmt::format("private/{}.key.pem", name), identity.key);
+    folder.WriteKey(fmt::format("private/{}.key.pem", name), identity.key);
   }
   return made;
 }
@@ -122,7 +130,9 @@ base::Result<Authority> OwnerOf(Folder& folder, bool& fresh) {
 std::string EnclaveOf(const sim::FleetRobot& robot) { return "/" + robot.node_namespace; }
 
 std::vector<Enclave> EnclavesOf(const koord::Model& model, const sim::Fleet& fleet,
-                                const std::vector<sim::Port>& ports, const std::string& program_name) {
+                                const std::string& program_name, diag::Diagnostics& diagnostics) {
+  const std::vector<sim::Port> ports = platform::PortsOf(model, fleet, diagnostics);
+  if (diagnostics.has_errors()) return {};
   Enclave bodies{kBodiesEnclave, {kDiscovery}, {kDiscovery}},
       doctor{kDoctorEnclave, {kDiscovery}, {kDiscovery}};
   const std::string name = ros::Plain(program_name);
@@ -180,11 +190,15 @@ base::Result<Keystore> MakeKeystore(const std::string& path, const std::vector<E
   for (const Enclave& enclave : enclaves) {
     const fs::path own = fs::path("enclaves") / enclave.name.substr(1);
     folder.Make(own);
-    if (!folder.Has(own / "key.pem")) {
+    // Keys of an owner of before, or what is left of them, are good for nothing.
+    const bool good =
+        folder.Has(own / "key.pem") && folder.Has(own / "cert.pem") &&
+        authority.value().Issued({folder.Read(own / "cert.pem"), folder.Read(own / "key.pem")}, enclave.name);
+    if (!good) {
       const auto identity = authority.value().Issue(enclave.name);
       if (!identity.ok()) return identity.error();
       folder.Write(own / "cert.pem", identity.value().certificate);
-      folder.Write(own / "key.pem", identity.value().key);
+      folder.WriteKey(own / "key.pem", identity.value().key);
       made.named.push_back(enclave.name);
     }
     const std::string permissions = security::Permissions(enclave, std::time(nullptr));

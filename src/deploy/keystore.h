@@ -19,10 +19,10 @@ inline constexpr const char* kDoctorEnclave = "/rondo/doctor";
 /// Names the enclave of a robot.
 std::string EnclaveOf(const sim::FleetRobot& robot);
 
-/// Returns who may say and hear what when this program runs: nobody more than what it needs.
+/// Returns who may say and hear what when this program runs: nobody more than what it needs. Reports what is wrong with the
+/// ports.
 std::vector<security::Enclave> EnclavesOf(const koord::Model& model, const sim::Fleet& fleet,
-                                          const std::vector<sim::Port>& ports,
-                                          const std::string& program_name);
+                                          const std::string& program_name, diag::Diagnostics& diagnostics);
 
 /// Tells what was made.
 struct Keystore {

@@ -68,6 +68,27 @@ TEST_F(Keystores, KeysAreForTheFilesThatWereSigned) {
   EXPECT_NE(nobody.error().message.find("`rondo keys`"), std::string::npos);
 }
 
+TEST_F(Keystores, KeysOfAnotherOwnerAndHalvesAreMadeAnew) {
+  Make();
+  fs::remove(folder_ / "enclaves/bot0/cert.pem");
+  EXPECT_EQ(Make().named, std::vector<std::string>{"/bot0"});
+  fs::remove_all(folder_ / "private");
+  const Keystore again = Make();
+  EXPECT_TRUE(again.fresh);
+  EXPECT_EQ(again.named.size(), 2U);
+  EXPECT_TRUE(KeysFor(folder_.string(), "/bot0", texts_).ok());
+}
+
+TEST_F(Keystores, OthersCannotReadKeysAndFoldersThatWereThereStay) {
+  fs::create_directories(folder_);
+  fs::permissions(folder_, static_cast<fs::perms>(0755));
+  Make();
+  EXPECT_EQ(fs::status(folder_).permissions(), static_cast<fs::perms>(0755));
+  EXPECT_EQ(fs::status(folder_ / "private").permissions(), static_cast<fs::perms>(0700));
+  for (const char* key : {"private/ca.key.pem", "enclaves/hall/bot1/key.pem"})
+    EXPECT_EQ(fs::status(folder_ / key).permissions(), static_cast<fs::perms>(0600)) << key;
+}
+
 TEST_F(Keystores, WhatCannotBeReadIsSaid) {
   Make();
   std::ofstream(folder_ / "private/ca.key.pem") << "no key";

@@ -203,7 +203,8 @@ class RobotProcess {
       const std::optional<RobotEnding> ending = Ending(view);
       if (Clock::now() >= next || ending) {
         next = Clock::now() + std::chrono::seconds(1);
-        const std::string why = senses_->Unusable();
+        const std::string still = ClockNews();
+        const std::string why = still.empty() ? senses_->Unusable() : still;
         Publish(why, &view);
         if (blind != !why.empty()) Tell(why.empty() ? "the sensors are usable again" : "skips: " + why, 30);
         blind = !why.empty();
@@ -213,6 +214,17 @@ class RobotProcess {
       if (const std::string problem = orders_->TakeProblem(); !problem.empty()) Tell(problem, 40);
       if (ending) return *ending;
     }
+  }
+
+  // Says what is wrong with a clock that is simulated: it may be meant to stand still.
+  std::string ClockNews() {
+    if (!clock_.simulated()) return {};
+    if (const uint64_t back = clock_.set_back(); std::exchange(set_back_, back) != back)
+      Tell("/clock was set back: is there more than one who sends it?", 30);
+    const Time now = clock_.Now(), here = transport::BootTime();
+    if (std::exchange(clock_stood_at_, now) != now) clock_moved_ = here;
+    const double still = Seconds(here - clock_moved_);
+    return still > 2 ? fmt::format("/clock stands still for {:.0f} s", still) : "";
   }
 
   // Says whom it waits for, in the beginning.
@@ -296,6 +308,8 @@ class RobotProcess {
   rounds::Settings settings_;
   std::unique_ptr<RoundThread> rounds_;
 
+  uint64_t set_back_ = 0;
+  Time clock_stood_at_ = 0, clock_moved_ = transport::BootTime();
   RobotReport report_;
 };
 

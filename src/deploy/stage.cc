@@ -79,7 +79,7 @@ void Stage::Run() {
       report_.failed = fmt::format("the state of `{}` is not finite any more", fleet_.robots[*bad].name);
       return;
     }
-    const double t = report_.time = static_cast<double>(step) * dt;
+    const double t = time_ = report_.time = static_cast<double>(step) * dt;
     drivers_->TellTime(t);
     touches_->Observe(t);
     rays.clear();

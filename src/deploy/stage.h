@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <random>
 #include <string>
@@ -42,6 +43,8 @@ class Stage {
   /// @error in the words of the library of the network. Empty: it was reported.
   base::Result<bool> Begin(dds::Participant& participant, const nlohmann::json& run,
                            diag::Diagnostics& diagnostics);
+  /// Returns how many seconds have passed in the world.
+  double time() const { return time_; }
   /// Ends, and returns what was seen.
   StageReport End();
 
@@ -59,6 +62,7 @@ class Stage {
   std::unique_ptr<sim::Touches> touches_;
   std::unique_ptr<platform::Drivers> drivers_;
   bool scans_ = false;
+  std::atomic<double> time_ = 0;
   base::StopToken stop_;
   StageReport report_;
   std::thread thread_;

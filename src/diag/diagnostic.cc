@@ -1,5 +1,7 @@
 #include "diag/diagnostic.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <tuple>
 #include <utility>
@@ -36,7 +38,13 @@ Diagnostic& Diagnostics::Report(Kind kind, Span span, std::string message) {
     dropped_ = std::move(fresh);
     return dropped_;
   }
-  if (fresh.severity == Severity::kError) ++errors_;
+  const bool error = fresh.severity == Severity::kError;
+  if (error) ++errors_;
+  if (++of_file_[{span.file, error}] > kMost && span.file.valid()) {
+    ++more_;
+    dropped_ = std::move(fresh);
+    return dropped_;
+  }
   diagnostics_.push_back(std::move(fresh));
   return diagnostics_.back();
 }
@@ -46,6 +54,16 @@ std::vector<Diagnostic> Diagnostics::Sorted() const {
   const auto key = [](const Diagnostic& d) { return std::tuple(d.span.file.value, d.span.begin); };
   std::stable_sort(result.begin(), result.end(),
                    [&](const Diagnostic& a, const Diagnostic& b) { return key(a) < key(b); });
+  if (more_ > 0)
+    result.push_back({Kind::kFileMore,
+                      Info(Kind::kFileMore).severity,
+                      {},
+                      fmt::format("there are {} more, which are not shown", more_),
+                      {},
+                      {},
+                      {},
+                      {},
+                      {}});
   return result;
 }
 

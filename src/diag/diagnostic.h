@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "diag/kind.h"
@@ -44,9 +46,12 @@ struct Diagnostic {
 };
 
 /// Collects what phases report, in the order of reporting. A second report of the same kind, at the same span
-/// and with the same message, is dropped.
+/// and with the same message, is dropped. Of each file the first `kMost` errors are kept, and so many warnings and notes; more
+/// are counted.
 class Diagnostics {
  public:
+  static constexpr size_t kMost = 20;
+
   /// Adds a diagnostic with the severity of its kind. The reference stays valid until the next report; what
   /// is added to a report that was dropped is lost.
   Diagnostic& Report(Kind kind, Span span, std::string message);
@@ -55,14 +60,18 @@ class Diagnostics {
   /// Reports whether anything of severity kError was reported; warnings and notes do not count.
   bool has_errors() const { return errors_ > 0; }
   size_t errors() const { return errors_; }
+  /// Returns how many were counted and not kept.
+  size_t more() const { return more_; }
 
-  /// Returns all diagnostics by file, then position; reports about no place come last.
+  /// Returns all diagnostics by file, then position; reports about no place come last, and then, if there are more than were
+  /// kept, a note of how many (kFileMore).
   std::vector<Diagnostic> Sorted() const;
 
  private:
   std::vector<Diagnostic> diagnostics_;
   Diagnostic dropped_{};
-  size_t errors_ = 0;
+  size_t errors_ = 0, more_ = 0;
+  std::map<std::pair<FileId, bool>, size_t> of_file_;  // by file, and whether they are errors
 };
 
 }  // namespace rondo::diag

@@ -15,6 +15,8 @@ enum class Severity : uint8_t { kError, kWarning, kNote };
 enum class Kind : uint8_t {
   // Files.
   kFileUnreadable,
+  kFileKind,
+  kFileMore,
   // Reading any of the languages.
   kSyntaxUnexpected,
   kSyntaxIndentation,

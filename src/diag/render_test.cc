@@ -60,5 +60,50 @@ TEST_F(Render, ColumnsCountCodePoints) {
   EXPECT_EQ(sources_.Locate(file, 5).column, 5u);
 }
 
+TEST(Rendering, WhatTerminalsObeyIsShownAndNotSent) {
+  EXPECT_EQ(Escaped("a\x1b[31m\x07\n\x7f"), "a\\x1b[31m\\x07\n\\x7f");
+  EXPECT_EQ(Escaped("\xC3\xA9 \xE2\x89\xA4 \xF0\x9F\xA4\x96"), "\xC3\xA9 \xE2\x89\xA4 \xF0\x9F\xA4\x96");
+  EXPECT_EQ(Escaped("\xFF\xC3 \xC0\x80"), "\\xff\\xc3 \\xc0\\x80");
+  EXPECT_EQ(Escaped("\xC2\x9B"), "\\xc2\\x9b");           // CSI, as one character
+  EXPECT_EQ(Escaped("\xE2\x80\xAE"), "\\xe2\\x80\\xae");  // right to left from here
+  SourceSet sources;
+  const FileId file = sources.Add("a\x1b.koord", "x \x1b[2J y\n");
+  Diagnostics diagnostics;
+  diagnostics.Report(Kind::kSyntaxUnexpected, {file, 7, 8}, "`\x1b` is nothing");
+  const std::string text = RenderText(sources, diagnostics.all()[0], Colour::kOff);
+  EXPECT_EQ(text.find('\x1b'), std::string::npos) << text;
+  // The caret stays below what it points at.
+  EXPECT_NE(text.find("x \xEF\xBF\xBD[2J y\n   |        ^"), std::string::npos) << text;
+}
+
+TEST(Rendering, OfALongLineAPartIsShown) {
+  SourceSet sources;
+  const FileId file = sources.Add("a.koord", std::string(5000, 'a') + "$" + std::string(5000, 'b'));
+  Diagnostics diagnostics;
+  diagnostics.Report(Kind::kSyntaxUnexpected, {file, 5000, 5001}, "no");
+  const std::string text = RenderText(sources, diagnostics.all()[0], Colour::kOff);
+  EXPECT_LT(text.size(), 600U);
+  const size_t line = text.find("aaa$bbb"), caret = text.find('^');
+  ASSERT_NE(line, std::string::npos);
+  ASSERT_NE(caret, std::string::npos);
+  const auto column = [&](size_t at) {
+    return CountCodePoints(text.substr(text.rfind('\n', at) + 1, at - text.rfind('\n', at) - 1));
+  };
+  EXPECT_EQ(column(line + 3), column(caret));
+}
+
+TEST(Diagnostics, OfEachFileTheFirstErrorsAreKeptAndTheOthersCounted) {
+  SourceSet sources;
+  const FileId a = sources.Add("a", std::string(100, 'x')), b = sources.Add("b", "x");
+  Diagnostics diagnostics;
+  for (uint32_t i = 0; i < 50; ++i) diagnostics.Report(Kind::kSyntaxUnexpected, {a, i, i + 1}, "no");
+  diagnostics.Report(Kind::kSyntaxUnexpected, {b, 0, 1}, "no");
+  diagnostics.Report(Kind::kSyntaxTab, {a, 0, 1}, "a tab");
+  EXPECT_EQ(diagnostics.errors(), 51U);
+  EXPECT_EQ(diagnostics.more(), 30U);
+  EXPECT_EQ(diagnostics.all().size(), 22U);
+  EXPECT_EQ(diagnostics.Sorted().back().kind, Kind::kFileMore);
+}
+
 }  // namespace
 }  // namespace rondo::diag

@@ -45,11 +45,52 @@ Mark MakeMark(const SourceSet& sources, Span span, bool primary, std::string mes
           std::move(message)};
 }
 
-// Tabs become one space so that carets stay below what they point at.
+constexpr uint32_t kWidest = 160;  // code points of a line that are shown
+constexpr std::string_view kCut = "\xE2\x80\xA6",
+                           kUnknown = "\xEF\xBF\xBD";  // an ellipsis, a replacement character
+
+// One character for each code point, so that carets stay below what they point at: a space for a tab, and one that says
+// so for what cannot be shown.
 std::string Flatten(std::string_view line) {
-  std::string result(line);
-  std::replace(result.begin(), result.end(), '\t', ' ');
+  std::string result;
+  for (size_t i = 0; i < line.size();) {
+    size_t end = i + 1;
+    while (end < line.size() && (static_cast<unsigned char>(line[end]) & 0xC0U) == 0x80U) ++end;
+    const std::string_view point = line.substr(i, end - i);
+    if (point == "\t")
+      result += ' ';
+    else
+      result += Escaped(point) == point ? point : kUnknown;
+    i = end;
+  }
   return result;
+}
+
+// The part of a line, from a code point on, that is shown; the first is 0.
+struct Part {
+  std::string text;
+  uint32_t first = 0, last = 0;
+};
+
+// Around what is marked, if the line is long.
+Part PartOf(std::string_view line, const Mark& mark) {
+  const uint32_t length = CountCodePoints(line);
+  if (length <= kWidest) return {Flatten(line), 0, length};
+  const uint32_t before = kWidest / 4;
+  const uint32_t first =
+      std::min(mark.column - 1 > before ? mark.column - 1 - before : 0, length - kWidest / 2);
+  const uint32_t last = std::min(length, first + kWidest);
+  size_t begin = 0, end = 0;
+  for (size_t i = 0, count = 0; i < line.size(); ++i) {
+    if ((static_cast<unsigned char>(line[i]) & 0xC0U) == 0x80U) continue;
+    if (count == first) begin = i;
+    if (count == last) end = i;
+    ++count;
+  }
+  if (last == length) end = line.size();
+  return {(first > 0 ? std::string(kCut) : "") + Flatten(line.substr(begin, end - begin)) +
+              (last < length ? std::string(kCut) : ""),
+          first, last};
 }
 
 }  // namespace
@@ -58,7 +99,7 @@ std::string RenderText(const SourceSet& sources, const Diagnostic& d, Colour col
   const Painter paint{colour == Colour::kOn};
   const std::string_view tone = SeverityColour(d.severity);
   std::string out = fmt::format("{}{} [{}]\n", paint(tone, fmt::format("{}: ", SeverityName(d.severity))),
-                                d.message, Info(d.kind).id);
+                                Escaped(d.message), Info(d.kind).id);
 
   // The primary file first, then the others in the order of their labels.
   std::vector<FileId> files;
@@ -84,17 +125,22 @@ std::string RenderText(const SourceSet& sources, const Diagnostic& d, Colour col
     const auto head = std::find_if(list.begin(), list.end(), [](const Mark& m) { return m.primary; });
     const Mark& at = head != list.end() ? *head : list.front();
     out += fmt::format("{:{}}{} {}:{}:{}\n{}\n", "", gutter, paint("34", i == 0 ? "-->" : ":::"),
-                       sources.path(file), at.line, at.column, bar);
+                       Escaped(sources.path(file)), at.line, at.column, bar);
     uint32_t shown = 0;
+    Part part;
     for (const Mark& mark : list) {
-      if (mark.line != shown) {
+      // Of a long line, each mark has its own part.
+      if (mark.line != shown || mark.column - 1 < part.first || mark.column - 1 > part.last) {
         shown = mark.line;
-        out += fmt::format("{} {}\n", paint("34", fmt::format("{:>{}} |", mark.line, gutter)),
-                           Flatten(sources.Line(file, mark.line)));
+        part = PartOf(sources.Line(file, mark.line), mark);
+        out += fmt::format("{} {}\n", paint("34", fmt::format("{:>{}} |", mark.line, gutter)), part.text);
       }
-      const std::string line(mark.width, mark.primary ? '^' : '-');
-      out += fmt::format("{} {:{}}{}{}\n", bar, "", mark.column - 1, paint(mark.primary ? tone : "34", line),
-                         mark.message.empty() ? "" : " " + mark.message);
+      const uint32_t column = mark.column - 1 - part.first + (part.first > 0 ? 1 : 0);
+      const std::string line(
+          std::min(mark.width, std::max(1U, part.last + 1 - std::min(part.last, mark.column - 1))),
+          mark.primary ? '^' : '-');
+      out += fmt::format("{} {:{}}{}{}\n", bar, "", column, paint(mark.primary ? tone : "34", line),
+                         mark.message.empty() ? "" : " " + Escaped(mark.message));
     }
   }
   for (const std::string& note : d.notes) {
@@ -103,17 +149,18 @@ std::string RenderText(const SourceSet& sources, const Diagnostic& d, Colour col
     while (start <= note.size()) {
       const size_t end = std::min(note.find('\n', start), note.size());
       out += fmt::format("{:{}} {} {}\n", "", gutter, paint("34", first ? "=" : "|"),
-                         note.substr(start, end - start));
+                         Escaped(std::string_view(note).substr(start, end - start)));
       first = false;
       start = end + 1;
     }
   }
-  for (const std::string& help : d.helps) out += fmt::format("{} {}\n", paint("32", "help:"), help);
+  for (const std::string& help : d.helps) out += fmt::format("{} {}\n", paint("32", "help:"), Escaped(help));
   for (const FixIt& fix : d.fixes) {
     const Position begin = sources.Locate(fix.span.file, fix.span.begin);
     const Position end = sources.Locate(fix.span.file, fix.span.end);
     if (begin.line != end.line || fix.replacement.find('\n') != std::string::npos) continue;
     const std::string_view line = sources.Line(fix.span.file, begin.line);
+    if (line.size() > kWidest) continue;
     const size_t length = fix.span.end - fix.span.begin;
     const auto at = fix.span.begin - static_cast<size_t>(line.data() - sources.text(fix.span.file).data());
     out += fmt::format(

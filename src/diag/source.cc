@@ -43,6 +43,58 @@ std::string_view SourceSet::Line(FileId file, uint32_t line) const {
   return result;
 }
 
+namespace {
+
+// How many bytes the code point has that begins here; 0: it is none.
+size_t Length(std::string_view text) {
+  const auto at = [&](size_t i) { return static_cast<unsigned char>(i < text.size() ? text[i] : 0); };
+  const unsigned char first = at(0);
+  const size_t length = first < 0x80                    ? 1
+                        : first >= 0xC2 && first < 0xE0 ? 2
+                        : first >= 0xE0 && first < 0xF0 ? 3
+                        : first >= 0xF0 && first < 0xF5 ? 4
+                                                        : 0;
+  for (size_t i = 1; i < length; ++i) {
+    if ((at(i) & 0xC0U) != 0x80U) return 0;
+  }
+  // Too long for what they say, half of a pair, beyond the last.
+  if ((first == 0xE0 && at(1) < 0xA0) || (first == 0xED && at(1) >= 0xA0) ||
+      (first == 0xF0 && at(1) < 0x90) || (first == 0xF4 && at(1) >= 0x90))
+    return 0;
+  return length;
+}
+
+bool Controls(std::string_view point) {
+  const auto first = static_cast<unsigned char>(point[0]);
+  if (point.size() == 1) return first < 0x20 || first == 0x7F;
+  // U+0080 to U+009F, and what changes the direction of what follows.
+  if (first == 0xC2) return static_cast<unsigned char>(point[1]) < 0xA0;
+  return (point >= "\xE2\x80\xAA" && point <= "\xE2\x80\xAE") ||
+         (point >= "\xE2\x81\xA6" && point <= "\xE2\x81\xA9");
+}
+
+}  // namespace
+
+std::string Escaped(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string out;
+  for (size_t i = 0; i < text.size();) {
+    const size_t length = Length(text.substr(i));
+    const std::string_view point = text.substr(i, std::max<size_t>(length, 1));
+    if (length > 0 && (point == "\n" || !Controls(point))) {
+      out += point;
+    } else {
+      for (const char c : point) {
+        out += "\\x";
+        out += kDigits[static_cast<unsigned char>(c) >> 4];
+        out += kDigits[static_cast<unsigned char>(c) & 15];
+      }
+    }
+    i += point.size();
+  }
+  return out;
+}
+
 uint32_t CountCodePoints(std::string_view text) {
   uint32_t count = 0;
   for (const char c : text) {

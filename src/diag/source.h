@@ -61,6 +61,9 @@ class SourceSet {
   std::deque<File> files_;
 };
 
+/// Returns a text that can be shown anywhere: control characters and bytes that are no UTF-8 as `\x1b`; line ends stay.
+std::string Escaped(std::string_view text);
+
 /// Returns the number of code points in UTF-8 text: of its bytes that continue no code point. A stray
 /// continuation byte in malformed text is not counted.
 uint32_t CountCodePoints(std::string_view text);

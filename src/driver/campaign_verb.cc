@@ -81,7 +81,7 @@ campaign::CampaignOptions ReadOptions(const Options& options, workspace::Session
     search.most = *std::ranges::max_element(options.robots);
   }
   if (options.scenarios.empty()) return search;
-  if (const auto file = workspace::ReadSource(options.scenarios, session))
+  if (const auto file = workspace::ReadSource(options.scenarios, workspace::Wanted::kToml, session))
     search.scenarios = campaign::ReadScenarios(session.sources, *file, session.diagnostics);
   return search;
 }
@@ -163,7 +163,8 @@ ExitStatus Run(const Options& options) {
   runs::FleetFiles surroundings(files.fleet, session);
   std::error_code ignored;
   if (loaded && (!options.fleet.empty() || std::filesystem::exists(files.fleet, ignored))) {
-    if (const auto file = workspace::ReadSource(files.fleet, session)) fleet = surroundings.Read(*file);
+    if (const auto file = workspace::ReadSource(files.fleet, workspace::Wanted::kToml, session))
+      fleet = surroundings.Read(*file);
   }
   const runs::CampaignTexts texts = TextsOf(files, session, surroundings.contents());
   campaign::CampaignOptions search = ReadOptions(options, session);
@@ -175,6 +176,8 @@ ExitStatus Run(const Options& options) {
     runs::CampaignTeams teams(loaded->model, fleet);
     const size_t first = search.scenarios.empty() ? search.least : search.scenarios[0].robots;
     if (teams.Make(first, session.diagnostics) != nullptr && !session.diagnostics.has_errors()) {
+      if (const std::string why = Folder(options.logs); !why.empty())
+        return Refuse("campaign", options.file, options.json, session.sources, session.diagnostics, why);
       if (!options.logs.empty()) search.each = LogsTo(options, texts);
       report = Search(teams, search, seconds);
       status = report.failure   ? ExitStatus::kRejected

@@ -50,7 +50,7 @@ ExitStatus Run(const Options& options) {
   workspace::Session session;
   std::vector<std::string> questions;
   if (!options.script.empty()) {
-    const auto file = workspace::ReadSource(options.script, session);
+    const auto file = workspace::ReadSource(options.script, workspace::Wanted::kText, session);
     lang::smtlib::Script script;
     if (file) lang::smtlib::ReadScript(session.sources, *file, script, session.diagnostics);
     if (!session.diagnostics.has_errors()) questions = solve::script::Questions(script);
@@ -61,7 +61,7 @@ ExitStatus Run(const Options& options) {
   std::string text;
   bool stopped = false;
   for (const std::string& path : options.files) {
-    const auto file = workspace::ReadSource(path, session);
+    const auto file = workspace::ReadSource(path, workspace::Wanted::kText, session);
     if (!file) continue;
     const size_t before = session.diagnostics.errors();
     if (contracts::IsTube(session.sources.text(*file))) {

@@ -42,7 +42,7 @@ std::optional<std::string> FormatKoord(const std::string& file, workspace::Sessi
 }
 
 std::optional<std::string> FormatMotion(const std::string& file, workspace::Session& session) {
-  const auto source = workspace::ReadSource(file, session);
+  const auto source = workspace::ReadSource(file, workspace::Wanted::kMotion, session);
   if (!source) return std::nullopt;
   choreo::Module module;
   choreo::Parse(session.sources, *source, module, session.diagnostics);

@@ -8,7 +8,6 @@
 #include "driver/command.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
-#include "platform/topics.h"
 #include "runs/robot_files.h"
 
 namespace rondo::driver {
@@ -46,10 +45,9 @@ ExitStatus Run(Options options) {
         options, session,
         fmt::format("`{}` does not say where its keys are: `keys = \"keys\"` in its `[ros]`, or `-o FOLDER`",
                     program->files.fleet));
-  const auto ports = platform::PortsOf(program->loaded->model, program->fleet, session.diagnostics);
+  const auto enclaves = deploy::EnclavesOf(program->loaded->model, program->fleet,
+                                           program->texts.program_name, session.diagnostics);
   if (session.diagnostics.has_errors()) return Fail(options, session, {});
-  const auto enclaves =
-      deploy::EnclavesOf(program->loaded->model, program->fleet, ports, program->texts.program_name);
   const auto made = deploy::MakeKeystore(folder, enclaves, program->texts);
   if (!made.ok()) return Fail(options, session, made.error().message);
   if (options.json) {

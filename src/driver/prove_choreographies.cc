@@ -27,6 +27,11 @@ class Run {
         cache_(options.cache ? solve::cache::ProofCache::DefaultFolder() : std::filesystem::path()) {}
 
   ExitStatus operator()() {
+    for (const std::string& folder : {options_.smt_out, options_.certificates}) {
+      if (const std::string why = Folder(folder); !why.empty())
+        return Refuse("prove", options_.files.front(), options_.json, session_.sources, session_.diagnostics,
+                      why);
+    }
     const auto module = workspace::LoadModule(options_.files, options_.admitted, session_);
     // First of all, as `rondo reach` does: sums are written in the order in which their terms are made.
     std::map<const choreo::Graph*, std::set<std::string>> discharged;

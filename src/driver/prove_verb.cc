@@ -94,6 +94,8 @@ ExitStatus Run(const Options& options) {
     return status;
   };
   if (!loaded) return finish_early(ExitStatus::kRejected);
+  if (const std::string why = Folder(options.smt_out); !why.empty())
+    return driver::Refuse("prove", options.file, options.json, session.sources, session.diagnostics, why);
   const koord::Model& model = loaded->model;
   if (model.invariants.empty()) {
     session.diagnostics
@@ -110,6 +112,12 @@ ExitStatus Run(const Options& options) {
                                                         : solve::cache::ProofCache::DefaultFolder());
   const solve::cache::CachingSolver caching(z3, cache);
   const solve::smtlib::SmtLibSolver other(options.cross_check);
+  const auto refuse = [&](const std::string& why) {
+    return driver::Refuse("prove", options.file, options.json, session.sources, session.diagnostics, why);
+  };
+  if (!options.cross_check.empty()) {
+    if (const auto tried = other.Try(); !tried.ok()) return refuse(tried.error().message);
+  }
   koord::ProveOptions prove = ToProveOptions(options);
   prove.solver = options.no_cache ? static_cast<const solve::Solver*>(&z3) : &caching;
   if (!options.cross_check.empty()) prove.cross_check = &other;

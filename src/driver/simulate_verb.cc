@@ -164,14 +164,14 @@ ExitStatus Run(const Options& options) {
   sim::Fleet fleet;
   runs::FleetFiles surroundings(files.fleet, session);
   if (loaded) {
-    const auto file = workspace::ReadSource(files.fleet, session);
+    const auto file = workspace::ReadSource(files.fleet, workspace::Wanted::kToml, session);
     if (!file) PrintFailure("a simulation needs a fleet: robots, models and a world; see docs/simulation.md");
     if (file) fleet = surroundings.Read(*file);
   }
   sim::NetworkFaults network;
   files.network = options.network;
   if (!options.network.empty() && !session.diagnostics.has_errors()) {
-    if (const auto file = workspace::ReadSource(options.network, session))
+    if (const auto file = workspace::ReadSource(options.network, workspace::Wanted::kToml, session))
       network = sim::ReadNetwork(session.sources, *file, fleet, session.diagnostics);
   }
   const auto finish_early = [&](ExitStatus status) {

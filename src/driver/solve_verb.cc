@@ -96,7 +96,7 @@ ExitStatus Run(const Options& options) {
   std::vector<Item> items(options.files.size());
   for (size_t i = 0; i < items.size(); ++i) {
     items[i].path = options.files[i];
-    const auto file = workspace::ReadSource(options.files[i], session);
+    const auto file = workspace::ReadSource(options.files[i], workspace::Wanted::kText, session);
     if (file) lang::smtlib::ReadScript(session.sources, *file, items[i].script, session.diagnostics);
   }
   const nlohmann::json diagnostics = diag::RenderJson(session.sources, session.diagnostics);

@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -47,14 +48,21 @@ diag::Colour ErrorColour() {
 }
 
 void PrintDiagnostics(const diag::SourceSet& sources, const diag::Diagnostics& diagnostics) {
+  constexpr ptrdiff_t kMostLines = 95;  // of what nobody would read to its end
   std::string text;
-  size_t errors = 0;
-  size_t warnings = 0;
+  size_t errors = 0, warnings = 0, left = 0;
+  ptrdiff_t lines = 0;
   for (const diag::Diagnostic& d : diagnostics.Sorted()) {
-    text += diag::RenderText(sources, d, ErrorColour()) + "\n";
     if (d.severity == diag::Severity::kError) ++errors;
     if (d.severity == diag::Severity::kWarning) ++warnings;
+    const std::string one = diag::RenderText(sources, d, ErrorColour()) + "\n";
+    lines += std::ranges::count(one, '\n');
+    if (lines <= kMostLines || text.empty())
+      text += one;
+    else
+      ++left;
   }
+  if (left > 0) text += fmt::format("... and {} more\n", left);
   if (errors > 0 && warnings > 0)
     text += fmt::format("{}, {}\n", base::Counted(errors, "error"), base::Counted(warnings, "warning"));
   else if (errors > 0)
@@ -74,7 +82,15 @@ verdict::ExitStatus WritePicture(const std::string& path, const std::string& svg
   return verdict::ExitStatus::kEstablished;
 }
 
-void PrintFailure(const std::string& message) { PrintError(fmt::format("rondo: {}\n", message)); }
+std::string Folder(const std::string& path) {
+  if (path.empty()) return {};
+  const auto made = base::MakeFolders(path);
+  return made.ok() ? "" : fmt::format("cannot use the folder `{}`: {}", path, made.error().message);
+}
+
+void PrintFailure(const std::string& message) {
+  PrintError(fmt::format("rondo: {}\n", diag::Escaped(message)));
+}
 
 verdict::ExitStatus Refuse(const std::string& command, const std::string& file, bool json,
                            const diag::SourceSet& sources, const diag::Diagnostics& diagnostics,

@@ -27,6 +27,10 @@ void PrintDiagnostics(const diag::SourceSet& sources, const diag::Diagnostics& d
 /// Writes a picture to a file, as a whole or not at all; says so, unless `quiet`.
 verdict::ExitStatus WritePicture(const std::string& path, const std::string& svg, bool quiet = false);
 
+/// Makes the folder that a user names for what a verb writes, if it is not there. Returns what is wrong; nothing if nothing is, or no
+/// folder is named.
+std::string Folder(const std::string& path);
+
 /// Writes `rondo: message` to standard error, for what went wrong outside any source file.
 void PrintFailure(const std::string& message);
 

@@ -103,6 +103,12 @@ bool TypeTable::Coerce(TypeId from, TypeId to) {
   return Unify(from, to);
 }
 
+std::string TypeTable::WithArticle(TypeId type) const {
+  const std::string name = Name(type);
+  const bool vowel = std::string_view("aeioAEIO").find(name[0]) != std::string_view::npos;
+  return fmt::format("{} `{}`", vowel ? "an" : "a", name);
+}
+
 std::string TypeTable::Name(TypeId type) const {
   const Type& t = (*this)[type];
   switch (t.kind) {

@@ -78,6 +78,8 @@ class TypeTable {
 
   /// Returns the type as it is written in programs, for messages.
   std::string Name(TypeId type) const;
+  /// Returns it for a sentence: "an `int`", "a `pos`".
+  std::string WithArticle(TypeId type) const;
 
  private:
   TypeId Add(Type type);

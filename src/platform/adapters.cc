@@ -3,11 +3,30 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
 
 namespace rondo::platform {
 namespace {
+
+constexpr auto kPatience = std::chrono::milliseconds(1500);
+
+// Calls what the user wrote; returns what it threw, for people.
+template <class Call>
+std::string Thrown(const Call& call) {
+  try {
+    call();
+    return {};
+  } catch (const std::exception& e) {
+    return e.what()[0] == '\0' ? "it failed" : e.what();
+  } catch (...) {
+    return "it failed, and did not say why";
+  }
+}
 
 // Makes what a library has under this name.
 template <class T>
@@ -25,11 +44,10 @@ base::Result<std::unique_ptr<T>> Make(const std::string& library, const char* ma
     return base::Error{
         fmt::format("`{}` was made for version {} of adapters, and this is version {}: compile it again",
                     library, version(), adapter::kVersion)};
-  try {
-    return std::unique_ptr<T>(make(site));
-  } catch (const std::exception& e) {
-    return base::Error{fmt::format("the adapter of `{}`: {}", site.port, e.what())};
-  }
+  std::unique_ptr<T> made;
+  const std::string thrown = Thrown([&] { made.reset(make(site)); });
+  if (made == nullptr) return base::Error{fmt::format("the adapter of `{}`: {}", site.port, thrown)};
+  return made;
 }
 
 }  // namespace
@@ -44,48 +62,125 @@ base::Result<std::unique_ptr<adapter::Actuator>> MakeActuator(const std::string&
   return Make<adapter::Actuator>(library, "rondo_make_actuator", "RONDO_ACTUATOR", site);
 }
 
+// What a thread uses that may outlive who started it.
+struct AdaptedSensor::Shared {
+  std::unique_ptr<adapter::Sensor> sensor;
+  size_t parts;
+  const Clock& clock;
+  std::mutex mutex;
+  std::condition_variable changed;
+  Said said;
+  bool ending = false, ended = false;
+
+  void Take(const adapter::Sample& sample) {
+    const std::lock_guard lock(mutex);
+    if (ending) return;  // the clock may be gone
+    said.wrong = Wrong(sample);
+    if (!said.wrong.empty()) return;
+    std::ranges::copy(sample.numbers, said.numbers.begin());
+    said.at = clock.Now() - static_cast<Time>(sample.age * 1e9);
+  }
+
+  std::string Wrong(const adapter::Sample& sample) const {
+    if (!sample.problem.empty()) return sample.problem;
+    if (sample.numbers.size() != parts)
+      return fmt::format("it says {} numbers, and has to say {}", sample.numbers.size(), parts);
+    if (!std::isfinite(sample.age) || sample.age < 0 || sample.age > 1e9)
+      return "it says an age that is none";
+    const bool finite = std::ranges::all_of(sample.numbers, [](double x) { return std::isfinite(x); });
+    return finite ? "" : "it says a number that is not finite";
+  }
+
+  void Run() {
+    std::unique_lock lock(mutex);
+    while (!ending) {
+      lock.unlock();
+      adapter::Sample sample;
+      const std::string thrown = Thrown([&] { sample = sensor->Read(); });
+      if (!thrown.empty()) sample = {{}, 0, thrown};
+      Take(sample);
+      lock.lock();
+      // Whoever does not wait for the next value is asked a hundred times a second.
+      changed.wait_for(lock, std::chrono::milliseconds(10), [&] { return ending; });
+    }
+    ended = true;
+    changed.notify_all();
+  }
+};
+
 AdaptedSensor::AdaptedSensor(std::unique_ptr<adapter::Sensor> sensor, size_t parts, const Clock& clock)
-    : sensor_(std::move(sensor)), parts_(parts), clock_(clock), thread_([this] { Run(); }) {}
+    : shared_(new Shared{std::move(sensor), parts, clock, {}, {}, {}, false, false}) {
+  std::thread([shared = shared_] { shared->Run(); }).detach();
+}
 
 AdaptedSensor::~AdaptedSensor() {
-  ended_ = true;
-  thread_.join();
+  std::unique_lock lock(shared_->mutex);
+  shared_->ending = true;
+  shared_->changed.notify_all();
+  shared_->changed.wait_for(lock, kPatience, [&] { return shared_->ended; });
 }
 
 AdaptedSensor::Said AdaptedSensor::said() const {
-  const std::lock_guard lock(mutex_);
-  return said_;
+  const std::lock_guard lock(shared_->mutex);
+  return shared_->said;
 }
 
-void AdaptedSensor::Run() {
-  while (!ended_) {
-    try {
-      Take(sensor_->Read());
-    } catch (const std::exception& e) {
-      Take({{}, 0, e.what()[0] == '\0' ? "it failed" : e.what()});
+struct AdaptedActuator::Shared {
+  std::unique_ptr<adapter::Actuator> actuator;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::optional<std::vector<double>> numbers;
+  std::string problem;
+  std::optional<std::chrono::steady_clock::time_point> since;  // it is being written
+  bool ending = false, ended = false;
+
+  void Run() {
+    std::unique_lock lock(mutex);
+    while (true) {
+      changed.wait(lock, [&] { return ending || numbers; });
+      if (!numbers) break;
+      const std::vector<double> now = *std::exchange(numbers, std::nullopt);
+      since = std::chrono::steady_clock::now();
+      lock.unlock();
+      const std::string thrown = Thrown([&] { actuator->Write(now); });
+      lock.lock();
+      since.reset();
+      if (!thrown.empty()) problem = thrown;
+      if (ending) break;
     }
-    // Whoever does not wait for the next value is asked a hundred times a second.
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    lock.unlock();
+    actuator->Safe();
+    lock.lock();
+    ended = true;
+    changed.notify_all();
   }
+};
+
+AdaptedActuator::AdaptedActuator(std::unique_ptr<adapter::Actuator> actuator)
+    : shared_(new Shared{std::move(actuator), {}, {}, {}, {}, {}, false, false}) {
+  std::thread([shared = shared_] { shared->Run(); }).detach();
 }
 
-void AdaptedSensor::Take(const adapter::Sample& sample) {
-  const std::lock_guard lock(mutex_);
-  said_.wrong = sample.problem;
-  if (!said_.wrong.empty()) return;
-  if (sample.numbers.size() != parts_) {
-    said_.wrong = fmt::format("it says {} numbers, and has to say {}", sample.numbers.size(), parts_);
-    return;
+AdaptedActuator::~AdaptedActuator() {
+  std::unique_lock lock(shared_->mutex);
+  shared_->ending = true;
+  shared_->changed.notify_all();
+  shared_->changed.wait_for(lock, kPatience, [&] { return shared_->ended; });
+}
+
+void AdaptedActuator::Write(std::vector<double> numbers) {
+  const std::lock_guard lock(shared_->mutex);
+  shared_->numbers = std::move(numbers);
+  shared_->changed.notify_all();
+}
+
+std::string AdaptedActuator::TakeProblem() {
+  const std::lock_guard lock(shared_->mutex);
+  if (shared_->since && std::chrono::steady_clock::now() - *shared_->since > kPatience) {
+    shared_->since = std::chrono::steady_clock::now();  // said again when it hangs for as long again
+    return "it does not come back from what it was told";
   }
-  if (!std::isfinite(sample.age) || sample.age < 0 || sample.age > 1e9) {
-    said_.wrong = "it says an age that is none";
-    return;
-  }
-  for (size_t i = 0; i < parts_; ++i) {
-    if (!std::isfinite(sample.numbers[i])) said_.wrong = "it says a number that is not finite";
-    said_.numbers[i] = sample.numbers[i];
-  }
-  said_.at = clock_.Now() - static_cast<Time>(sample.age * 1e9);
+  return std::exchange(shared_->problem, {});
 }
 
 }  // namespace rondo::platform

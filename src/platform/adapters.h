@@ -1,14 +1,12 @@
 #pragma once
 
-#include <atomic>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
+#include <vector>
 
+#include "adapter/adapter.h"
 #include "base/result.h"
-#include "platform/adapter.h"
 #include "platform/clock.h"
 #include "platform/messages.h"
 
@@ -21,10 +19,11 @@ base::Result<std::unique_ptr<adapter::Sensor>> MakeSensor(const std::string& lib
 base::Result<std::unique_ptr<adapter::Actuator>> MakeActuator(const std::string& library,
                                                               const adapter::Site& site);
 
-/// Reads a sensor of the user on a thread of its own, and keeps what it said last.
+/// Reads a sensor of the user on a thread of its own, and keeps what it said last. Who waits for the sensor for too long when this
+/// ends is left behind, so that the robot can end.
 class AdaptedSensor {
  public:
-  /// @param parts  how many numbers it has to say. `clock` outlives it.
+  /// @param parts  how many numbers it has to say. `clock` outlives it by as long as a thread may be left behind: for good.
   AdaptedSensor(std::unique_ptr<adapter::Sensor> sensor, size_t parts, const Clock& clock);
   AdaptedSensor(const AdaptedSensor&) = delete;
   AdaptedSensor& operator=(const AdaptedSensor&) = delete;
@@ -39,16 +38,26 @@ class AdaptedSensor {
   Said said() const;
 
  private:
-  void Run();
-  void Take(const adapter::Sample& sample);
+  struct Shared;
+  std::shared_ptr<Shared> shared_;
+};
 
-  const std::unique_ptr<adapter::Sensor> sensor_;
-  const size_t parts_;
-  const Clock& clock_;
-  mutable std::mutex mutex_;
-  Said said_;
-  std::atomic<bool> ended_ = false;
-  std::thread thread_;
+/// Sets an actuator of the user on a thread of its own: the latest counts. Makes it safe when this ends.
+class AdaptedActuator {
+ public:
+  explicit AdaptedActuator(std::unique_ptr<adapter::Actuator> actuator);
+  AdaptedActuator(const AdaptedActuator&) = delete;
+  AdaptedActuator& operator=(const AdaptedActuator&) = delete;
+  ~AdaptedActuator();
+
+  /// Waits for nothing.
+  void Write(std::vector<double> numbers);
+  /// Returns what it said when it could not do what it was told, since the last call, or that it hangs; empty: nothing.
+  std::string TakeProblem();
+
+ private:
+  struct Shared;
+  std::shared_ptr<Shared> shared_;
 };
 
 }  // namespace rondo::platform

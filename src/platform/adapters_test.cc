@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <functional>
 #include <stdexcept>
 
@@ -45,6 +46,42 @@ TEST(AdaptedSensor, SaysWhatIsWrong) {
   EXPECT_NE(After([] { return adapter::Sample{{NAN}, 0, ""}; }).wrong, "");
   EXPECT_NE(After([] { return adapter::Sample{{1}, -1, ""}; }).wrong, "");
   EXPECT_EQ(After([]() -> adapter::Sample { throw std::runtime_error("it broke"); }).wrong, "it broke");
+}
+
+TEST(AdaptedSensor, WhoThrowsAnythingOrHangsStopsNobody) {
+  EXPECT_NE(After([]() -> adapter::Sample { throw 7; }).wrong, "");
+  const AdaptedSensor sensor(std::make_unique<Reads>([]() -> adapter::Sample {
+                               for (;;) std::this_thread::sleep_for(std::chrono::seconds(1));
+                             }),
+                             1, kClock);
+  EXPECT_FALSE(sensor.said().at);
+}  // it ends
+
+struct Does : adapter::Actuator {
+  Does(std::function<void(double)> does, int& was_safe) : writes(std::move(does)), safe(was_safe) {}
+  void Write(const std::vector<double>& numbers) override { writes(numbers[0]); }
+  void Safe() noexcept override { ++safe; }
+  std::function<void(double)> writes;
+  int& safe;
+};
+
+TEST(AdaptedActuator, IsToldTheLatestAndMadeSafeOnce) {
+  int safe = 0;
+  std::atomic<double> last = 0;
+  {
+    AdaptedActuator actuator(std::make_unique<Does>([&](double x) { last = x; }, safe));
+    for (int i = 1; i <= 100; ++i) actuator.Write({static_cast<double>(i)});
+    EXPECT_TRUE(dds::Eventually([&] { return last == 100; }));
+    EXPECT_EQ(actuator.TakeProblem(), "");
+  }
+  EXPECT_EQ(safe, 1);
+  {
+    AdaptedActuator actuator(std::make_unique<Does>([](double) { throw 7; }, safe));
+    actuator.Write({1});
+    std::string problem;
+    EXPECT_TRUE(dds::Eventually([&] { return !(problem = actuator.TakeProblem()).empty(); }));
+  }
+  EXPECT_EQ(safe, 2);
 }
 
 TEST(Adapters, LibrariesThatAreNoneAreErrors) {

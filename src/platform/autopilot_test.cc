@@ -56,7 +56,7 @@ class Offboards : public testing::Test {
   // For so many seconds.
   void Fly(double seconds, const std::optional<Autopilot>& pilot) {
     for (int i = 0; i < 50 * seconds; ++i) {
-      offboard_.Fly({12, 23, 5}, pilot);
+      offboard_.Fly({12, 23, 5}, pilot, true);
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
   }
@@ -90,19 +90,34 @@ TEST_F(Offboards, SetpointsAreNorthEastDownFromTheOrigin) {
 }
 
 TEST_F(Offboards, AsksAfterASecondAndNotAgainWhenAPilotTakesOver) {
-  Fly(0.8, Autopilot{false, false});
+  Fly(0.8, Autopilot{false, false, 0});
   EXPECT_TRUE(Commands().empty());
-  Fly(0.8, Autopilot{false, false});
+  Fly(0.8, Autopilot{false, false, 0});
   EXPECT_TRUE(Eventually([&] {
     const std::lock_guard lock(commands_.mutex);
     return !commands_.heard.empty();
   }));
   EXPECT_EQ(Commands(), std::vector<uint32_t>{176});  // MAV_CMD_DO_SET_MODE
-  Fly(1.2, Autopilot{false, true});
+  Fly(1.2, Autopilot{false, true, 0});
   EXPECT_EQ(Commands(), std::vector<uint32_t>{400});  // MAV_CMD_COMPONENT_ARM_DISARM
-  Fly(0.1, Autopilot{true, true});
-  Fly(1.5, Autopilot{true, false});
-  Fly(1.2, Autopilot{false, true});
+  EXPECT_FALSE(offboard_.refused());
+  Fly(0.1, Autopilot{true, true, 0});
+  Fly(1.5, Autopilot{true, false, 0});
+  Fly(1.2, Autopilot{false, true, 0});
+  EXPECT_TRUE(Commands().empty());
+}
+
+TEST_F(Offboards, NeverTakesADroneFromWhoFliesIt) {
+  Fly(2.5, Autopilot{true, false, 0});
+  Fly(0.5, Autopilot{false, false, 0});  // it has landed: by hand
+  EXPECT_TRUE(Commands().empty());
+}
+
+TEST_F(Offboards, AsksOnlyWhileAnOrderIsInForce) {
+  for (int i = 0; i < 125; ++i) {
+    offboard_.Fly({12, 23, 5}, Autopilot{false, false, 0}, false);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
   EXPECT_TRUE(Commands().empty());
 }
 
@@ -123,11 +138,11 @@ TEST(SimulatedAutopilots, ListenOnlyToWhoSpeaksAndArms) {
   std::optional<Autopilot> pilot;
   const auto pass = [&](double seconds, bool speaks) {
     for (int i = 0; i < 50 * seconds; ++i) {
-      if (speaks) offboard.Fly({12, 23, 5}, pilot);
+      if (speaks) offboard.Fly({12, 23, 5}, pilot, true);
       autopilot.Step(0.02);
       autopilot.Tell(1'000'000);
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      for (const auto& m : modes.Take()) pilot = Autopilot{m.flag_armed, m.flag_control_offboard_enabled};
+      for (const auto& m : modes.Take()) pilot = Autopilot{m.flag_armed, m.flag_control_offboard_enabled, 0};
     }
   };
   pass(0.5, true);

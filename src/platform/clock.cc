@@ -24,12 +24,15 @@ base::Result<bool> Clock::Begin(dds::Participant& participant, size_t node) {
 
 // One thread of the library calls it at a time.
 void Clock::Hear(int64_t stamp) {
+  constexpr int64_t kLatest = int64_t{1} << 60;
+  if (stamp < 0 || stamp > kLatest) return;
   const int64_t before = stamp_.exchange(stamp);
-  // Time that nobody can say anything about does not pass: none before the first word, and none when it is set back.
-  if (now_ == 0)
-    now_ = 1;
-  else
-    now_ += std::max<int64_t>(0, stamp - before);
+  if (now_ > 0 && stamp < before) {
+    shift_ += before - stamp;
+    ++set_back_;
+  }
+  // Nobody takes a clock that stands at zero for one that was not heard.
+  now_ = std::max<Time>(stamp + shift_, 1);
 }
 
 Time Clock::Now() const { return simulated_ ? now_.load() : transport::BootTime(); }

@@ -35,10 +35,12 @@ TEST(Clock, FollowsWhatIsSaidAndNeverStepsBack) {
   ASSERT_TRUE(say(5'000'000'000));
   EXPECT_TRUE(clock.begun());
   const Time first = clock.Now();
+  EXPECT_EQ(first, 5'000'000'000);  // the same for all who hear it
   ASSERT_TRUE(say(5'250'000'000));
   EXPECT_EQ(clock.Now() - first, 250'000'000);
   ASSERT_TRUE(say(1'000'000'000));  // the simulator began again
   EXPECT_EQ(clock.Now() - first, 250'000'000);
+  EXPECT_EQ(clock.set_back(), 1U);
   ASSERT_TRUE(say(1'500'000'000));
   EXPECT_EQ(clock.Now() - first, 750'000'000);
 }

@@ -222,6 +222,19 @@ void Drivers::Tell(const std::vector<sim::Rays>& scans) {
   (void)transforms_->Publish(transforms).ok();
 }
 
+namespace {
+
+// A pose in the frame of the fleet, as it is seen from an origin.
+ros::geometry_msgs::Pose Seen(const ros::geometry_msgs::Pose& pose, const sim::Origin& origin) {
+  ros::geometry_msgs::Transform to;
+  to.rotation = Turned(-origin.yaw);
+  const auto back = Rotated(to.rotation, {origin.position[0], origin.position[1], origin.position[2]});
+  to.translation = {-back.x, -back.y, -back.z};
+  return Applied(to, pose);
+}
+
+}  // namespace
+
 void Drivers::Odometry(const Voice& voice) {
   const Body& body = *bodies_[voice.robot];
   ros::nav_msgs::Odometry m;
@@ -229,13 +242,8 @@ void Drivers::Odometry(const Voice& voice) {
   m.child_frame_id = BaseOf(fleet_, voice.robot);
   const Point p = body.position(), v = body.velocity();
   const auto q = body.rotation();
-  m.pose.pose.position.x = p[0];
-  m.pose.pose.position.y = p[1];
-  m.pose.pose.position.z = p[2];
-  m.pose.pose.orientation.x = q[0];
-  m.pose.pose.orientation.y = q[1];
-  m.pose.pose.orientation.z = q[2];
-  m.pose.pose.orientation.w = q[3];
+  m.pose.pose.position = PointOf(p);
+  m.pose.pose.orientation = {q[0], q[1], q[2], q[3]};
   // In the frame of the body (nav_msgs/Odometry).
   ros::geometry_msgs::Quaternion back = m.pose.pose.orientation;
   back.w = -back.w;
@@ -244,6 +252,11 @@ void Drivers::Odometry(const Voice& voice) {
   world.y = v[1];
   world.z = v[2];
   m.twist.twist.linear = Rotated(back, world);
+  // As it counts from where it began.
+  if (const auto& origin = fleet_.robots[voice.robot].origin) {
+    m.header.frame_id = fleet_.robots[voice.robot].node_namespace + "/odom";
+    m.pose.pose = Seen(m.pose.pose, *origin);
+  }
   (void)voice.publisher->Publish(m).ok();
 }
 

@@ -4,6 +4,8 @@ namespace rondo::platform {
 
 namespace {
 
+constexpr int64_t kSlack = 500'000'000;  // nanoseconds by which clocks may differ
+
 int64_t AcceptedAt(const ros::action_msgs::GoalStatus& status) {
   const auto& stamp = status.goal_info.stamp;
   return stamp.sec * 1'000'000'000LL + stamp.nanosec;
@@ -31,7 +33,7 @@ void Goals::Hear(const ros::action_msgs::GoalStatusArray& message) {
       if (known_.size() < kMost) known_.insert(id);
       continue;
     }
-    if (AcceptedAt(status) < since_) continue;
+    if (AcceptedAt(status) < since_ - kSlack) continue;
     if (latest == nullptr || AcceptedAt(*latest) < AcceptedAt(status)) latest = &status;
   }
   if (latest == nullptr) return;

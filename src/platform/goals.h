@@ -8,9 +8,10 @@
 
 namespace rondo::platform {
 
-/// Follows what becomes of the goals of one robot, as the status of Nav2's action tells it. Goals have no name in an order: what an order
-/// began is told by that nobody knew it before, and by that it was accepted later. So a robot has to be the only one who sends goals, and its
-/// clock has to agree with that of Nav2: if it is ahead, goals are never reached. Not thread-safe.
+/// Follows what becomes of the goals of one robot, as the status of Nav2's action tells it. Goals have no name in an order: what
+/// an order began is told by that nobody knew it before, and by that it was accepted later, if clocks differ by half a second at
+/// most. So a robot has to be the only one who sends goals; one that was accepted in the last half second before an order, and told
+/// behind it, is taken for its own. Not thread-safe.
 class Goals {
  public:
   /// Says that the robot is told to go somewhere else at this time, in nanoseconds since 1970.

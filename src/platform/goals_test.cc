@@ -49,6 +49,13 @@ TEST(Goals, OnlyWhatWasAcceptedAfterTheOrderCounts) {
   EXPECT_EQ(goals.reached(), true);
 }
 
+TEST(Goals, ClocksMayDifferALittle) {
+  Goals goals;
+  goals.Begin(At(10) + 200'000'000);  // this clock is ahead
+  goals.Hear(Array({{1, 10, kSucceeded}}));
+  EXPECT_EQ(goals.reached(), true);
+}
+
 TEST(Goals, ThoseOfTheOrderBeforeDoNotCountForTheNext) {
   Goals goals;
   goals.Begin(At(10));

@@ -38,7 +38,7 @@ base::Result<bool> Offboard::Begin(dds::Participant& participant, size_t node, c
   return publish(Beside(setpoints, kVehicleCommand), ros::px4_msgs::VehicleCommand::kMessage, commands_);
 }
 
-void Offboard::Fly(const sim::Point& to, const std::optional<Autopilot>& pilot) {
+void Offboard::Fly(const sim::Point& to, const std::optional<Autopilot>& pilot, bool may_ask) {
   const Time now = clock_.Now();
   const auto micros = static_cast<uint64_t>(clock_.Stamp() / 1000);
   ros::px4_msgs::OffboardControlMode mode;
@@ -58,10 +58,12 @@ void Offboard::Fly(const sim::Point& to, const std::optional<Autopilot>& pilot) 
   (void)setpoints_->Publish(m).ok();
   if (!began_) began_ = now;
   if (!pilot) return;
-  if (pilot->armed && pilot->offboard) flew_ = true;
-  if (flew_ || Seconds(now - *began_) < kBefore) return;
-  if (asked_ && Seconds(now - *asked_) < kAgain) return;
-  asked_ = now;
+  if (pilot->armed) flew_ = true;
+  if (pilot->armed && pilot->offboard) asked_ = 0;
+  if (flew_ || !may_ask || refused() || Seconds(now - *began_) < kBefore) return;
+  if (asked_at_ && Seconds(now - *asked_at_) < kAgain) return;
+  asked_at_ = now;
+  ++asked_;
   if (!pilot->offboard)
     Command(kSetMode, kCustomMode, kOffboard);
   else

@@ -10,15 +10,19 @@
 
 namespace rondo::platform {
 
-/// What PX4 says of who steers, and when that was.
+/// What PX4 says of who steers, and when that was, by the clock of the robot.
 struct Autopilot {
   bool armed = false, offboard = false;
+  Time at = 0;
+  /// It is flown by somebody else.
+  bool taken() const { return armed && !offboard; }
 };
 
 /// Flies a drone by an autopilot (PX4 1.14 and later, over its bridge to DDS): tells it where to fly, with the heartbeat that
 /// it wants, asks it to listen, and to arm. What asks is the first order; nothing is sent before.
 ///
-/// If it listened once and does not any more - a pilot has taken over, it lands, something has failed - nobody asks again.
+/// Whoever flies it goes on: if it is armed and does not listen, nobody asks. If it was armed once and does not fly for us any more - a
+/// pilot has taken over, it lands, something has failed - nobody asks again, and not more than ten times at all.
 class Offboard {
  public:
   /// @param clock, origin  outlive it.
@@ -29,8 +33,11 @@ class Offboard {
   base::Result<bool> Begin(dds::Participant& participant, size_t node, const std::string& setpoints);
 
   /// Says where to fly: a point in the frame of the fleet. To be called at least ten times a second.
-  /// @param pilot  what the autopilot says of itself; nothing: it says nothing.
-  void Fly(const sim::Point& to, const std::optional<Autopilot>& pilot);
+  /// @param pilot  what the autopilot says of itself; nothing: it says nothing, or not lately.
+  /// @param may_ask  an order is in force.
+  void Fly(const sim::Point& to, const std::optional<Autopilot>& pilot, bool may_ask);
+  /// Reports whether it was asked ten times, and does not do it.
+  bool refused() const { return asked_ >= kMost; }
 
  private:
   void Command(uint32_t command, float first, float second);
@@ -39,8 +46,10 @@ class Offboard {
   const sim::Origin& origin_;
   const uint8_t system_;
   std::unique_ptr<dds::Publisher> modes_, setpoints_, commands_;
-  std::optional<Time> began_, asked_;
-  bool flew_ = false;  // it listened, armed, once
+  static constexpr int kMost = 10;
+  std::optional<Time> began_, asked_at_;
+  int asked_ = 0;
+  bool flew_ = false;  // it was armed, once
 };
 
 }  // namespace rondo::platform

@@ -69,7 +69,7 @@ base::Result<bool> Orders::Begin(dds::Participant& participant, size_t node, Lin
   if (!topic.library.empty()) {
     auto actuator = MakeActuator(topic.library, {fleet_.robots[robot_].name, topic.port, topic.options});
     if (!actuator.ok()) return actuator.error();
-    line.adapted = std::move(actuator).value();
+    line.adapted = std::make_unique<AdaptedActuator>(std::move(actuator).value());
     return true;
   }
   if (&lines_[line.sender] != &line) return true;
@@ -103,8 +103,11 @@ void Orders::Give(size_t variable, const Heap& heap, const Word* at, bool always
   {
     const std::lock_guard lock(mutex_);
     const sim::PortRole role = line->port->role;
+    // A fallback lets nobody take off.
+    if (always && line->offboard != nullptr && !line->told) return;
     if (role == sim::PortRole::kPath || role == sim::PortRole::kTarget) {
       if (!PathOf(variable, heap, at, line->path)) return;
+      if (role == sim::PortRole::kTarget) line->numbers = line->path.front();
     } else if (line->topic.carries == Carries::kBool) {
       line->numbers[0] = *at != 0 ? 1 : 0;
     } else if (line->topic.carries == Carries::kPoint) {
@@ -126,6 +129,7 @@ void Orders::Stay(const Point& position) {
     // A drone on the ground that was told nothing stays there.
     if (line.offboard != nullptr && !line.told) continue;
     line.path = {position};
+    line.numbers = position;
     line.due = line.always = true;
   }
   changed_.notify_all();
@@ -134,7 +138,16 @@ void Orders::Stay(const Point& position) {
 
 std::string Orders::TakeProblem() {
   const std::lock_guard lock(mutex_);
-  return std::exchange(problem_, {});
+  for (Line& line : lines_) {
+    const std::string problem = line.adapted == nullptr ? "" : line.adapted->TakeProblem();
+    if (!problem.empty()) return fmt::format("`{}`: {}: {}", line.topic.port, line.topic.name, problem);
+    if (line.refused && !std::exchange(line.refusal_said, true))
+      return fmt::format(
+          "`{}`: the autopilot was asked ten times to listen and to arm, and does not: its checks before flight may fail, "
+          "or its number not be {} (`system`)",
+          line.topic.port, line.topic.system);
+  }
+  return {};
 }
 
 uint64_t Orders::late() const {
@@ -147,12 +160,20 @@ void Orders::Run() {
   std::unique_lock lock(mutex_);
   const auto wanted = [this] { return ended_ || std::ranges::any_of(lines_, &Line::due); };
   while (true) {
-    changed_.wait_for(lock, ticks_ ? kControl : milliseconds(100), wanted);
+    changed_.wait_for(lock,
+                      !ticks_              ? milliseconds(100)
+                      : clock_.simulated() ? milliseconds(2)
+                                           : kControl,
+                      wanted);
     const bool last = ended_;
     const Time now = clock_.Now();
-    period_ = clock_.simulated() ? std::min(Seconds(now - ticked_), 0.1)
-                                 : std::chrono::duration<double>(kControl).count();
-    ticked_ = now;
+    constexpr double kPeriod = std::chrono::duration<double>(kControl).count();
+    // By a clock that is simulated, a period may be over sooner than on the wall, or never.
+    const bool ticks = ended_ || !clock_.simulated() || Seconds(now - ticked_) >= kPeriod;
+    if (ticks) {
+      period_ = clock_.simulated() ? std::min(Seconds(now - ticked_), 0.1) : kPeriod;
+      ticked_ = now;
+    }
     for (Line& line : lines_) {
       const bool due = std::exchange(line.due, false);
       const dds::Publisher* publisher = lines_[line.sender].publisher.get();
@@ -165,12 +186,13 @@ void Orders::Run() {
         line.said = line.path;
         line.said_numbers = line.numbers;
         line.unheard = publisher != nullptr && publisher->matched() == 0;
-      } else if (!line.ticks()) {
+      } else if (!line.ticks() || !ticks) {
         continue;
       }
+      const bool in_force = now <= until_;
       lock.unlock();
       if (line.ticks())
-        Tick(line, due && in_time, last);
+        Tick(line, {due && in_time, ticks, last, in_force});
       else
         Send(line);
       lock.lock();
@@ -178,20 +200,20 @@ void Orders::Run() {
     sent_.notify_all();
     if (last) break;
   }
-  for (const Line& line : lines_) {
-    if (line.adapted != nullptr) line.adapted->Safe();
-  }
 }
 
 // What was told in time holds until something else is told, as for drivers that have the controller themselves.
-void Orders::Tick(Line& line, bool fresh, bool last) {
+void Orders::Tick(Line& line, const Moment& moment) {
   if (line.offboard != nullptr) {
-    if (!line.said.empty()) line.offboard->Fly(line.said.front(), senses_.autopilot());
+    if (line.said.empty() || !moment.ticks) return;
+    line.offboard->Fly(line.said.front(), senses_.autopilot(), moment.in_force);
+    if (!line.offboard->refused()) return;
+    const std::lock_guard lock(mutex_);
+    line.refused = true;
     return;
   }
-  if (fresh) line.body->Follow(line.said);
-  // While a clock that is simulated stands still, so do controllers.
-  if (last || period_ > 0) Drive(line, last);
+  if (moment.fresh) line.body->Follow(line.said);
+  if (moment.ticks) Drive(line, moment.last);
 }
 
 void Orders::Drive(Line& line, bool last) {
@@ -214,12 +236,7 @@ void Orders::Send(const Line& line) {
   const bool goes = topic.carries == Carries::kPose || topic.carries == Carries::kPath;
   if (line.adapted != nullptr) {
     const size_t parts = topic.carries == Carries::kPoint ? 3 : 1;
-    try {
-      line.adapted->Write({line.said_numbers.begin(), line.said_numbers.begin() + parts});
-    } catch (const std::exception& e) {
-      const std::lock_guard lock(mutex_);
-      problem_ = fmt::format("`{}`: {}: {}", topic.port, topic.name, e.what());
-    }
+    line.adapted->Write({line.said_numbers.begin(), line.said_numbers.begin() + parts});
   } else if (topic.carries == Carries::kJointTrajectory) {
     // A driver that is told of some joints may let the others be where they are.
     std::vector<JointGoal> goals;
@@ -230,7 +247,8 @@ void Orders::Send(const Line& line) {
           goals.push_back({other.topic.joint, other.numbers[0], other.topic.within});
       }
     }
-    (void)lines_[line.sender].publisher->Write(MessageOf(goals, Header())).ok();
+    // At once, whatever the clock of the driver says: a stamp of zero.
+    (void)lines_[line.sender].publisher->Write(MessageOf(goals, HeaderOf(fleet_.ros.frame, 0))).ok();
   } else if (goes) {
     (void)line.publisher->Write(MessageOf(topic.carries, line.said, Header())).ok();
   } else {

@@ -54,24 +54,32 @@ class Orders {
     Topic topic;
     size_t sender;  // the line whose publisher sends it: its own, but of joints of one topic the first
     std::unique_ptr<dds::Publisher> publisher;
-    std::unique_ptr<adapter::Actuator> adapted;
+    std::unique_ptr<AdaptedActuator> adapted;
     std::vector<sim::Point> path;  // of kPose one point
     Numbers numbers{};             // of others
-    bool told = false;             // something, ever
+    bool told = false;             // something, by a round
     bool due = false;              // to be sent
     bool unheard = false;          // sent, and nobody was there
     bool always = false;           // whatever time it is
     // Only the thread that sends uses what follows.
     std::vector<sim::Point> said;  // as `path`, `numbers`, of what is being sent
     Numbers said_numbers{};
-    std::unique_ptr<sim::Body> body;     // its controller, of what is driven
-    std::unique_ptr<Offboard> offboard;  // of what is flown by an autopilot
+    std::unique_ptr<sim::Body> body;             // its controller, of what is driven
+    std::unique_ptr<Offboard> offboard;          // of what is flown by an autopilot
+    bool refused = false, refusal_said = false;  // under the lock
     bool ticks() const { return body != nullptr || offboard != nullptr; }
   };
   base::Result<bool> Begin(dds::Participant& participant, size_t node, Line& line);
   void Run();
   void Send(const Line& line);
-  void Tick(Line& line, bool fresh, bool last);
+  // What is so when a line is looked at.
+  struct Moment {
+    bool fresh;     // there is a new order
+    bool ticks;     // the period of the controllers is over
+    bool last;      // the robot ends
+    bool in_force;  // what was told may take effect
+  };
+  void Tick(Line& line, const Moment& moment);
   void Drive(Line& line, bool last);
   ros::std_msgs::Header Header() const;
 
@@ -88,7 +96,6 @@ class Orders {
   std::condition_variable changed_, sent_;
   Time until_ = 0;
   uint64_t late_ = 0;
-  std::string problem_;
   bool ended_ = false;
   std::thread thread_;
 };

@@ -71,6 +71,10 @@ Senses::Senses(const koord::Model& model, const sim::Fleet& fleet, const std::ve
   way_.Begin({fleet.robots[robot].position}, tolerance_);
   for (Topic& topic : SensedTopics(model, fleet, ports, robot, of_port_))
     heard_.emplace_back().topic = std::move(topic);
+  for (size_t p = 0; p < ports.size(); ++p) {
+    if (ports[p].role == PortRole::kPosition && of_port_[p] && !heard_[*of_port_[p]].topic.library.empty())
+      adapted_place_ = of_port_[p];
+  }
 }
 
 base::Result<dds::Subscription*> Senses::Listen(dds::Participant& participant, size_t node,
@@ -97,8 +101,11 @@ base::Result<bool> Senses::Begin(dds::Participant& participant, size_t node) {
                [this, i](std::string_view bytes, const dds::Received&) { Hear(i, bytes); });
     if (!subscription.ok()) return subscription.error();
     heard_[i].subscription = subscription.value();
-    if (topic.carries != Carries::kPx4Odometry || pilot_) continue;
-    if (auto begun = ListenToPilot(participant, node, topic.name); !begun.ok()) return begun;
+  }
+  const Topic odometry = OdometryOf(fleet_, robot_);
+  pilots_ = odometry.carries == Carries::kPx4Odometry;
+  if (pilots_) {
+    if (auto begun = ListenToPilot(participant, node, odometry.name); !begun.ok()) return begun;
   }
   for (const bool fixed : {false, true}) {
     ros::Qos qos = ros::kTransforms;
@@ -122,7 +129,8 @@ base::Result<bool> Senses::ListenToPilot(dds::Participant& participant, size_t n
       Listen(participant, node, Beside(odometry, kControlMode), ros::px4_msgs::VehicleControlMode::kMessage,
              {.reliable = false, .depth = 1}, [this](std::string_view bytes, const dds::Received&) {
                ros::px4_msgs::VehicleControlMode m;
-               if (ros::Parse(bytes, m)) HearPilot({m.flag_armed, m.flag_control_offboard_enabled});
+               if (ros::Parse(bytes, m))
+                 HearPilot({m.flag_armed, m.flag_control_offboard_enabled, clock_.Now()});
              });
   if (!listens.ok()) return listens.error();
   return true;
@@ -131,7 +139,7 @@ base::Result<bool> Senses::ListenToPilot(dds::Participant& participant, size_t n
 void Senses::HearPilot(const Autopilot& pilot) {
   const std::lock_guard lock(mutex_);
   pilot_ = pilot;
-  flew_ = flew_ || (pilot.armed && pilot.offboard);
+  flew_ = flew_ || pilot.armed;
 }
 
 void Senses::Hear(size_t number, std::string_view bytes) {
@@ -169,8 +177,10 @@ void Senses::Hear(size_t number, std::string_view bytes) {
   Heard& heard = heard_[number];
   heard.at = now;
   heard.wrong = numbers ? "" : "what it says cannot be read";
-  heard.numbers = numbers.value_or(heard.numbers);
-  if (!Finite(heard.numbers)) heard.wrong = "it says a number that is not finite";
+  if (numbers && Finite(*numbers))
+    heard.numbers = *numbers;
+  else if (numbers)
+    heard.wrong = "it says a number that is not finite";
 }
 
 void Senses::HearPlace(Heard& heard, const std::variant<Place, std::string>& place, Time now) {
@@ -244,9 +254,37 @@ std::string Senses::Unusable() {
     const std::string why = Wrong(heard, now);
     if (!why.empty()) return fmt::format("`{}`: {}", heard.topic.port, why);
   }
-  if (flew_ && !(pilot_->armed && pilot_->offboard))
-    return "the autopilot does not listen any more: a pilot has taken over, or it has landed";
+  return WrongPilot(now);
+}
+
+// Whether it is ours to fly. Before the first order it stands, and nobody has to say anything.
+std::string Senses::WrongPilot(Time now) const {
+  constexpr double kSilent = 2;  // seconds
+  if (!pilots_) return {};
+  if (!pilot_) return "nobody says who steers: is the autopilot there?";
+  if (Seconds(now - pilot_->at) > kSilent) return "the autopilot does not say any more who steers";
+  if (pilot_->taken()) return "a pilot flies it, or the autopilot does by itself";
+  if (flew_ && !pilot_->armed) return "it has landed, or was switched off: start it again by hand";
   return {};
+}
+
+// Where a library says that it is.
+void Senses::FindPlace() {
+  if (!adapted_place_) return;
+  Heard& heard = heard_[*adapted_place_];
+  const AdaptedSensor::Said said = heard.adapted->said();
+  if (!said.at || (place_ && *said.at <= place_at_)) return;
+  HearPlace(heard, Place{said.numbers, {}, 0}, *said.at);
+}
+
+// A status may be of the goal before, whose end was told late: then the robot is somewhere else.
+bool Senses::NearGoal() const {
+  constexpr double kNear = 0.5;  // metres
+  if (!place_) return true;
+  Point away = place_->position;
+  for (size_t i = 0; i < 3; ++i) away[i] -= way_.path().back()[i];
+  if (!tolerance_.flies) away[2] = 0;
+  return std::hypot(away[0], away[1], away[2]) <= std::max(kNear, tolerance_.last);
 }
 
 bool Senses::Usable(size_t, uint64_t) { return Unusable().empty(); }
@@ -256,6 +294,9 @@ void Senses::Read(size_t robot, uint64_t, koord::node::Cell cell, std::span<Word
   const auto port = std::ranges::find(ports_, cell.variable, &Port::variable);
   if (port == ports_.end()) return;
   const std::lock_guard lock(mutex_);
+  FindPlace();
+  // What came before the first round is no stay at the end of a way.
+  if (!std::exchange(began_, true)) way_.Begin({place_ ? place_->position : fleet_.robots[robot_].position});
   const auto heard = of_port_[static_cast<size_t>(port - ports_.begin())];
   if (port->role == PortRole::kReached && !heard) {
     words[0] = static_cast<Word>(way_.reached());
@@ -264,7 +305,7 @@ void Senses::Read(size_t robot, uint64_t, koord::node::Cell cell, std::span<Word
   if (!heard) return;
   Heard& from = heard_[*heard];
   if (from.topic.carries == Carries::kGoalStatus) {
-    words[0] = static_cast<Word>(goals_.reached().value_or(way_.reached()));
+    words[0] = static_cast<Word>(goals_.reached() ? *goals_.reached() && NearGoal() : way_.reached());
     return;
   }
   if (from.adapted != nullptr) {
@@ -314,11 +355,14 @@ void Senses::GoesAlong(const std::vector<Point>& path) {
 
 std::optional<Place> Senses::place() {
   const std::lock_guard lock(mutex_);
+  FindPlace();
   return place_;
 }
 
 std::optional<Autopilot> Senses::autopilot() {
+  const Time now = clock_.Now();
   const std::lock_guard lock(mutex_);
+  if (pilot_ && Seconds(now - pilot_->at) > 1) return std::nullopt;
   return pilot_;
 }
 

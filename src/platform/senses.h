@@ -50,7 +50,7 @@ class Senses final : public koord::node::Sensors {
   void GoesAlong(const std::vector<sim::Point>& path);
   /// Returns where it is, if anybody said so.
   std::optional<Place> place();
-  /// Returns what its autopilot says of who steers, if there is one that did.
+  /// Returns what its autopilot says of who steers, if there is one that did lately.
   std::optional<Autopilot> autopilot();
 
  private:
@@ -72,6 +72,9 @@ class Senses final : public koord::node::Sensors {
                                           const std::string& topic, const ros::Message& type,
                                           const ros::Qos& qos, dds::Receive receive);
   base::Result<bool> ListenToPilot(dds::Participant& participant, size_t node, const std::string& odometry);
+  std::string WrongPilot(Time now) const;
+  void FindPlace();
+  bool NearGoal() const;
   void Hear(size_t heard, std::string_view bytes);
   void HearPlace(Heard& heard, const std::variant<Place, std::string>& place, Time now);
   void HearPilot(const Autopilot& pilot);
@@ -96,9 +99,12 @@ class Senses final : public koord::node::Sensors {
   Frames frames_;
   sim::Waypoints way_;
   Goals goals_;
+  bool pilots_ = false;  // there is an autopilot
   std::optional<Autopilot> pilot_;
-  bool flew_ = false;        // it was armed, and listened, once
-  std::vector<Word> words_;  // kept for its memory
+  bool flew_ = false;                    // it was armed, once
+  std::optional<size_t> adapted_place_;  // which of these says where it is, if a library does
+  bool began_ = false;                   // the first round
+  std::vector<Word> words_;              // kept for its memory
   std::vector<std::unique_ptr<dds::Subscription>>
       subscriptions_;  // last: nothing arrives any more when the others go
 };

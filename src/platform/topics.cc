@@ -143,6 +143,11 @@ class PortCheck {
     const std::string name = NameOf(model_, port);
     const sim::FleetPort* said = Said(fleet_, name);
     if (said == nullptr) return;
+    if (sim::IsActuator(model_, port) && said->max_age > 0) {
+      diagnostics_.Report(diag::Kind::kFleetValue, said->span,
+                          fmt::format("`{}` is an actuator: `max_age` is of sensors", name));
+      return;
+    }
     for (size_t r = 0; r < fleet_.robots.size(); ++r) {
       const auto [what, help] = Wrong(port, name, *said, r);
       if (what.empty()) continue;
@@ -174,6 +179,13 @@ class PortCheck {
           return {fmt::format("`{}` does not say where to go, so it cannot be made of velocities", name),
                   help};
         const bool steers = said.via == PortVia::kAckermann;
+        const auto place = std::ranges::find_if(fleet_.ros.ports, [](const auto& p) {
+          return p.second.via == PortVia::kAdapter &&
+                 (p.first == "psn" || p.first == "position" || p.first == "pos");
+        });
+        if (place != fleet_.ros.ports.end())
+          return {fmt::format("a controller has to know the heading, and `{}` does not say it", place->first),
+                  "let odometry say where the robot is: `{ ros2 = \"odom\" }`"};
         if (BodyOf(r)->Told() && (!steers || robot.model == "car")) return {};
         return {fmt::format("`{}` is a `{}`, which is not driven by {}", robot.name, robot.model,
                             steers ? "an angle of steering" : "velocities in the plane"),
@@ -220,23 +232,53 @@ class PortCheck {
   diag::Diagnostics& diagnostics_;
 };
 
-// A topic of two robots would be read, or obeyed, by both.
+// A topic of two robots would be read, or obeyed, by both; one that carries two things is heard by nobody; and where a robot is, one
+// topic says.
 void CheckShared(const koord::Model& model, const sim::Fleet& fleet, const std::vector<sim::Port>& ports,
                  diag::Diagnostics& diagnostics) {
-  std::map<std::string, size_t> of;
+  struct Use {
+    size_t robot;
+    Topic topic;
+  };
+  std::map<std::string, Use> of;
+  std::map<size_t, Topic> place;  // by robot
+  const auto report = [&](size_t robot, std::string what) -> diag::Diagnostic& {
+    return diagnostics.Report(diag::Kind::kFleetValue, fleet.robots[robot].span, std::move(what));
+  };
   for (const sim::Port& port : ports) {
     for (size_t r = 0; r < fleet.robots.size(); ++r) {
       const auto topic = TopicOf(model, fleet, r, port);
       if (!topic || !topic->library.empty()) continue;
-      const auto [it, fresh] = of.emplace(topic->name, r);
-      if (it->second == r) continue;
-      diagnostics
-          .Report(diag::Kind::kFleetValue, fleet.robots[r].span,
-                  fmt::format("`{}` and `{}` have one topic for `{}`: {}", fleet.robots[it->second].name,
+      const auto& [robot, other] = of.emplace(topic->name, Use{r, *topic}).first->second;
+      if (robot != r) {
+        report(r, fmt::format("`{}` and `{}` have one topic for `{}`: {}", fleet.robots[robot].name,
                               fleet.robots[r].name, topic->port, topic->name))
-          .Help("give each robot a `namespace` of its own, and topics that do not begin with `/`");
-      return;
+            .Help("give each robot a `namespace` of its own, and topics that do not begin with `/`");
+        return;
+      }
+      if (TypeOf(other.carries).name != TypeOf(topic->carries).name) {
+        report(r, fmt::format("`{}` and `{}` are on one topic, {}, and need messages of two types",
+                              other.port, topic->port, topic->name))
+            .Help("name another topic for one of them in `[ports]`");
+        return;
+      }
+      if (topic->carries != Carries::kOdometry && topic->carries != Carries::kPx4Odometry) continue;
+      const Topic& first = place.emplace(r, *topic).first->second;
+      if (first.name != topic->name) {
+        report(r, fmt::format("`{}` and `{}` say by two topics where `{}` is, and how it moves: {} and {}",
+                              first.port, topic->port, fleet.robots[r].name, first.name, topic->name))
+            .Help("name one topic for both in `[ports]`");
+        return;
+      }
     }
+  }
+  std::map<std::string, size_t> spaces;
+  for (size_t r = 0; r < fleet.robots.size(); ++r) {
+    const auto [it, fresh] = spaces.emplace(fleet.robots[r].node_namespace, r);
+    if (fresh) continue;
+    report(r, fmt::format("`{}` and `{}` have one namespace: `{}`", fleet.robots[it->second].name,
+                          fleet.robots[r].name, it->first));
+    return;
   }
 }
 

@@ -131,7 +131,7 @@ class Launcher {
       return begun.error();
     const auto listens = Listen(*participant.value());
     if (!listens.ok()) return listens.error();
-    Watch();
+    Watch(stage);
     children_.End();
     report_.stage = stage.End();
     subscription_.reset();
@@ -225,15 +225,15 @@ class Launcher {
     return all;
   }
 
-  void Watch() {
-    std::optional<Clock::time_point> begun;
+  void Watch(const deploy::Stage& stage) {
+    std::optional<double> begun;  // in the world
     const double duration = options_.duration > 0 ? options_.duration : program_.fleet.duration;
     for (int i = 0;; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       const auto statuses = Statuses();
       const bool rounds = std::ranges::any_of(statuses, [](const auto& s) { return s.round > 0; });
-      if (rounds && !begun) begun = Clock::now();
-      if (begun) report_.time = options_.speed * std::chrono::duration<double>(Clock::now() - *begun).count();
+      if (rounds && !begun) begun = stage.time();
+      if (begun) report_.time = stage.time() - *begun;
       if (options_.progress && i % 25 == 0) options_.progress(statuses, report_.time);
       report_.interrupted = options_.stop.StopRequested();
       const size_t running = children_.Running();

@@ -19,7 +19,7 @@ std::optional<RobotProgram> LoadRobotProgram(const SimulationFiles& files, std::
   p.files = files;
   p.loaded = workspace::LoadKoord({files.program, files.spec, true}, session);
   if (p.loaded == nullptr) return std::nullopt;
-  const auto file = workspace::ReadSource(files.fleet, session);
+  const auto file = workspace::ReadSource(files.fleet, workspace::Wanted::kToml, session);
   if (!file) return std::nullopt;
   p.surroundings = std::make_unique<FleetFiles>(files.fleet, session);
   p.fleet = p.surroundings->Read(*file);
@@ -65,6 +65,8 @@ base::Result<dds::Network> NetworkOf(const RobotProgram& program, const std::str
     folder = store;
   }
   if (folder.empty()) return network;
+  if (network.value().domain > 230)
+    return base::Error{fmt::format("domain {} has no security: use one up to 230", network.value().domain)};
   const auto keys = deploy::KeysFor(folder, enclave, program.texts);
   if (!keys.ok()) return keys.error();
   dds::Network with = std::move(network).value();

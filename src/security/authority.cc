@@ -128,6 +128,18 @@ base::Result<Identity> Authority::Issue(const std::string& name) const {
   return Identity{PemOf(certificate.get()), PemOf(key.get())};
 }
 
+bool Authority::Issued(const Identity& identity, const std::string& name) const {
+  const auto loaded = Load(identity);
+  if (!loaded.ok()) return false;
+  X509* certificate = loaded.value().certificate_.get();
+  char subject[256];
+  const int length =
+      X509_NAME_get_text_by_NID(X509_get_subject_name(certificate), NID_commonName, subject, sizeof subject);
+  const bool good = length > 0 && name == subject && X509_verify(certificate, key_.get()) == 1;
+  ERR_clear_error();
+  return good;
+}
+
 base::Result<std::string> Authority::Sign(std::string_view text) const {
   constexpr int kFlags = PKCS7_DETACHED | PKCS7_STREAM | PKCS7_TEXT;
   const Bio in = Reading(text), out(BIO_new(BIO_s_mem()));

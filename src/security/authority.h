@@ -27,6 +27,8 @@ class Authority {
 
   /// Returns a certificate for that name (`CN=NAME`, a serial number that no other has), and a fresh key.
   base::Result<Identity> Issue(const std::string& name) const;
+  /// Reports whether this is a certificate that it issued for that name, and its key.
+  bool Issued(const Identity& identity, const std::string& name) const;
   /// Returns a text with its signature: S/MIME, `multipart/signed`.
   base::Result<std::string> Sign(std::string_view text) const;
 

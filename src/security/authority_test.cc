@@ -58,6 +58,16 @@ TEST(Authority, IsLoadedWithItsOwnKeyOnly) {
   EXPECT_NE(authority.Issue("/bot0").value().key, authority.Issue("/bot0").value().key);
 }
 
+TEST(Authority, KnowsWhatItIssued) {
+  const Authority authority = Made("fleet"), other = Made("fleet");
+  const Identity robot = authority.Issue("/bot0").value();
+  EXPECT_TRUE(authority.Issued(robot, "/bot0"));
+  EXPECT_FALSE(authority.Issued(robot, "/bot1"));
+  EXPECT_FALSE(other.Issued(robot, "/bot0"));
+  EXPECT_FALSE(authority.Issued({robot.certificate, other.Issue("/bot0").value().key}, "/bot0"));
+  EXPECT_FALSE(authority.Issued({"", ""}, "/bot0"));
+}
+
 TEST(Authority, SumsAreThoseOfTheStandard) {  // FIPS 180-2, appendix B.1
   EXPECT_EQ(Sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }

@@ -29,7 +29,7 @@ void ReadParameters(const koord::Model& model, const Fleet& fleet, koord::semant
       options.params[static_cast<size_t>(found - model.variables.begin())] = *words;
     } else {
       diagnostics.Report(diag::Kind::kFleetValue, given.span,
-                         fmt::format("`{}` must be a `{}`", name, model.types.Name(found->type)));
+                         fmt::format("`{}` must be {}", name, model.types.WithArticle(found->type)));
     }
   }
 }

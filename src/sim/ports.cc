@@ -79,11 +79,12 @@ class Finder {
   void Find(size_t v, bool sensor) {
     const koord::Variable& variable = model_.variables[v];
     const std::string name = variable.name.substr(variable.module.size() + 1);
+    Port port{v, RoleOf(model_.types, name, variable.type, sensor), {}};
     if (elsewhere_.contains(name)) {
-      ports_.push_back({v, PortRole::kOwn, std::vector<std::optional<BodyPort>>(robots_.size())});
+      port.own.resize(robots_.size());
+      ports_.push_back(std::move(port));
       return;
     }
-    Port port{v, RoleOf(model_.types, name, variable.type, sensor), {}};
     for (size_t r = 0; r < robots_.size(); ++r) {
       const FleetRobot& robot = robots_[r];
       auto own = of_robot_[r]->FindPort(name);

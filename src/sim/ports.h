@@ -34,7 +34,7 @@ struct Port {
 };
 
 /// Returns the ports of the program, by name and type. Reports each one that a robot lacks.
-/// @param elsewhere  names of ports that are not those of bodies: they are kOwn, and nobody's.
+/// @param elsewhere  names of ports that are not those of bodies: no body needs them.
 std::vector<Port> FindPorts(const koord::Model& model, const std::vector<FleetRobot>& robots,
                             diag::Diagnostics& diagnostics, const std::set<std::string>& elsewhere = {});
 

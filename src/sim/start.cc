@@ -106,8 +106,9 @@ class Starter {
     const koord::Variable& v = model_.variables[variable];
     auto words = koord::semantics::FromJson(model_.types, team_.heap(), v.type, given.value);
     if (!words) {
-      auto& report = diagnostics_.Report(Kind::kFleetValue, given.span,
-                                         fmt::format("`{}` must be a `{}`", name, model_.types.Name(v.type)));
+      auto& report =
+          diagnostics_.Report(Kind::kFleetValue, given.span,
+                              fmt::format("`{}` must be {}", name, model_.types.WithArticle(v.type)));
       if (v.PerRobot()) {
         report.Help(fmt::format(
             "or a value for each of the {} robots: a list in their order, or a table of their names",

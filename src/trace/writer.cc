@@ -37,7 +37,8 @@ std::string Partial(const std::string& path) { return path + ".partial"; }
 base::Result<Writer> Writer::Open(const std::string& path) {
   std::error_code failed;
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  if (!folder.empty()) std::filesystem::create_directories(folder, failed);
+  if (!folder.empty() && !std::filesystem::exists(folder, failed))
+    return base::Error{"there is no folder `" + folder.string() + "`"};
   if (std::filesystem::exists(path, failed) && !std::filesystem::is_regular_file(path, failed))
     return base::Error{"it is not a regular file"};
   Writer writer(path);

@@ -31,8 +31,7 @@ inline constexpr Schema kRecord{"", "", ""};
 /// that, nothing of it stays.
 class Writer {
  public:
-  /// Begins a file, and makes the folders that it lies in. @error if it cannot be opened, or is no regular
-  /// file.
+  /// Begins a file. @error if it cannot be opened, is no regular file, or its folder is not there.
   static base::Result<Writer> Open(const std::string& path);
   Writer(Writer&& other) noexcept;
   Writer& operator=(Writer&&) = delete;

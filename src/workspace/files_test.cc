@@ -48,7 +48,7 @@ class SourceFiles : public Folder {};
 
 TEST_F(SourceFiles, AFileThatIsReadKeepsItsNameAndText) {
   const std::string path = Write("a.koord", "text\n");
-  const auto file = ReadSource(path, session_);
+  const auto file = ReadSource(path, Wanted::kText, session_);
   ASSERT_TRUE(file);
   EXPECT_EQ(session_.sources.path(*file), path);
   EXPECT_EQ(session_.sources.text(*file), "text\n");
@@ -56,13 +56,13 @@ TEST_F(SourceFiles, AFileThatIsReadKeepsItsNameAndText) {
 }
 
 TEST_F(SourceFiles, AMissingFileIsOneReport) {
-  EXPECT_FALSE(ReadSource(Path("none"), session_));
+  EXPECT_FALSE(ReadSource(Path("none"), Wanted::kText, session_));
   EXPECT_TRUE(SaysOnly(diag::Kind::kFileUnreadable));
   EXPECT_EQ(session_.sources.size(), 0U);
 }
 
 TEST_F(SourceFiles, AFolderIsNoFile) {
-  EXPECT_FALSE(ReadSource(folder_.path().string(), session_));
+  EXPECT_FALSE(ReadSource(folder_.path().string(), Wanted::kText, session_));
   EXPECT_TRUE(SaysOnly(diag::Kind::kFileUnreadable));
 }
 

@@ -8,7 +8,7 @@ namespace rondo::workspace {
 namespace {
 
 bool ParseFile(const std::string& path, Session& session, koord::Program& program) {
-  const auto file = ReadSource(path, session);
+  const auto file = ReadSource(path, Wanted::kKoord, session);
   if (file) koord::Parse(session.sources, *file, program, session.diagnostics);
   return file.has_value();
 }

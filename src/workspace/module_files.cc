@@ -23,7 +23,7 @@ class Reader {
 
   bool Read(const std::string& file) {
     if (!IsNew(file)) return true;
-    const auto source = ReadSource(file, session_);
+    const auto source = ReadSource(file, Wanted::kMotion, session_);
     if (source) Parse(file, *source);
     return source.has_value();
   }

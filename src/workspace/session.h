@@ -20,7 +20,16 @@ struct Session {
   };
 };
 
-/// Adds a file to the sources. Returns nothing, after a report, if it cannot be read.
-std::optional<diag::FileId> ReadSource(const std::string& path, Session& session);
+/// Names what a file is read as.
+enum class Wanted : uint8_t {
+  kKoord,   ///< a program or specification
+  kMotion,  ///< robots and choreographies (`.rondo`)
+  kToml,    ///< fleets, networks, scenarios
+  kText,    ///< any text
+};
+
+/// Adds a file to the sources, without its byte order mark. Returns nothing, after a report, if it cannot be read, is no text, or
+/// plainly something else than what is wanted.
+std::optional<diag::FileId> ReadSource(const std::string& path, Wanted wanted, Session& session);
 
 }  // namespace rondo::workspace

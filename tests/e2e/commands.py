@@ -6,6 +6,7 @@
 import json
 import os
 import pathlib
+import random
 import re
 import signal
 import subprocess
@@ -137,7 +138,58 @@ small = [s for s in scripts if "precondition" in s.name]
 check("scripts are read", all(rondo("solve", "--solver", "icp", str(s)).stdout.startswith("unsat") for s in small[:3]))
 certificates = sorted((FOLDER / "certificates").glob("*.cert"))
 check("certificates of motions", len(certificates) > 20 and rondo("certify", *map(str, certificates[:5])).returncode == 0)
-check("a folder that cannot be written", "problem:" in rondo("prove", "--no-cache", "--smt-out", "/dev/null/x", handover).stdout)
+done = rondo("prove", "--no-cache", "--smt-out", "/dev/null/x", handover)
+check("a folder that cannot be written", done.returncode == 1 and "cannot use the folder" in done.stderr, done.stderr)
+
+# What was never meant as input: one message, soon, and short.
+garbage = bytes(random.Random(1).randrange(256) for _ in range(200_000))
+controls = "invariant \x1b[31mred\x1b[0m: $ \x07\n"
+others = {"garbage": (garbage, "is no text"), "trace": (b"\x89MCAP0\r\n" + garbage, "is an MCAP trace"), "picture": (b"\x89PNG\r\n\x1a\n" + garbage, "is a PNG picture"),
+          "library": (b"\x7fELF" + garbage, "is a program or library"), "utf16": ("\ufeffinvariant".encode("utf-16-le"), "is text in UTF-16"),
+          "urdf": (b'<?xml version="1.0"?>\n<robot name="a"/>\n', "is XML, such as a robot in URDF"), "json": (b'{"rondo-run": 1}\n', "is JSON")}
+for name, (content, says) in others.items():
+    for suffix, verb in ((".koord", "check"), (".koord", "prove"), (".koord", "simulate"), (".koord", "explore"), (".koord", "fmt"), (".rondo", "check"), (".rondo", "graph"),
+                         (".rondo", "reach")):
+        file = FOLDER / (name + suffix)
+        file.write_bytes(content)
+        (FOLDER / (name + ".toml")).write_text("[[robot]]\nmodel = \"car\"\nposition = [0, 0, 0]\n")
+        done = rondo(verb, str(file))
+        check(f"{verb} {file.name}", done.returncode == 1 and says in done.stderr and done.stderr.count("error") <= 3 and len(done.stderr.splitlines()) < 8,
+              f"status {done.returncode} {done.stderr[:300]}")
+    file = FOLDER / (name + "_fleet.toml")
+    file.write_bytes(content)
+    done = rondo("simulate", LINEFORM, "--fleet", str(file))
+    check(f"a fleet that is {name}", done.returncode == 1 and len(done.stderr.splitlines()) < 12, done.stderr[:300])
+done = rondo("simulate", "models/room.rondo")
+check("a choreography for a program", done.returncode == 1 and "is a file of robots and choreographies" in done.stderr, done.stderr)
+# Text that is none of the language, long, on one line, deeply nested, with signs that terminals obey.
+for name, text in (("signs", "$ % ^ ~ ` " * 20_000), ("words", "some words that mean nothing at all\n" * 5_500), ("brackets", "(" * 200_000), ("one", "invariant x: " + "a + " * 50_000 + "a\n"),
+                   ("braces", "{ } " * 50_000), ("strings", '"' * 200_000), ("indented", "".join(" " * (i % 40) + "x\n" for i in range(9_000))),
+                   ("assignments", "E:\n    eff:\n" + "        nothing = nowhere\n" * 7_000), ("controls", controls * 3_000), ("numbers", "1.2.3 " * 33_000)):
+    for suffix in (".koord", ".rondo", ".smt2"):
+        file = FOLDER / (name + suffix)
+        file.write_text(text)
+        done = rondo("solve" if suffix == ".smt2" else "check", str(file))
+        lines = (done.stdout + done.stderr).splitlines()
+        check(f"{name}{suffix} is refused in few words", done.returncode != 0 and len(lines) <= 100 and max(map(len, lines)) < 400, f"{done.returncode} {len(lines)} {lines[:3]}"[:500])
+        check(f"{name}{suffix}: terminals are not told anything", "\x1b" not in done.stderr and "\x07" not in done.stderr)
+many = json.loads(rondo("check", "--json", str(FOLDER / "signs.koord")).stdout)["diagnostics"]
+check("how many more is said", many[-1]["kind"] == "file-more" and len(many) == 21, many[-1])
+marked = FOLDER / "marked.koord"
+marked.write_bytes(b"\xef\xbb\xbf" + (ROOT / LINEFORM).read_bytes())
+check("a byte order mark", rondo("check", str(marked)).returncode == 0)
+
+# Files are written into folders that are there.
+for args in (["simulate", LINEFORM, "--duration", "1", "--trace"], ["graph", handover, "--svg"]):
+    path = FOLDER / "nowhere" / "file"
+    done = rondo(*args, str(path))
+    check(f"no folder is made for {args[-1]}", done.returncode == 1 and "there is no folder" in done.stderr and not path.parent.exists(), done.stderr)
+done = rondo("prove", LINEFORM, "--cross-check", "nosuchsolver")
+check("a solver that is not there", done.returncode == 1 and "cannot run `nosuchsolver`" in done.stderr, done.stderr)
+for args in (["check", LINEFORM, "--json"], ["prove", LINEFORM], ["explain", "file-kind"], ["--help"], ["explore", "examples/koord/leader.koord"], ["fmt", "--stdout", LINEFORM]):
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([RONDO, *args], cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True, env=ENV, timeout=300)
+    check(f"a full disk: {args}", done.returncode == 1 and "cannot write the output" in done.stderr, f"{done.returncode} {done.stderr}")
 check("an option for Koord", rondo("prove", "--robots", "3", handover).returncode == 2)
 check("an option for motions", rondo("prove", "--svg", "x.svg", LINEFORM).returncode == 2)
 check("nothing to prove", "there is no choreography" in rondo("prove", "models/carts.rondo").stderr)

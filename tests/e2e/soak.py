@@ -70,7 +70,7 @@ def main():
         before = [resident(p.pid) for p in robots]
         time.sleep(45 * minutes)
         after = [resident(p.pid) for p in robots]
-        reports = [json.loads(p.communicate(timeout=120)[0]) for p in robots]
+        reports = [json.loads(p.communicate(timeout=10 * minutes + 120)[0]) for p in robots]
     for number, (a, b, report) in enumerate(zip(before, after, reports)):
         # The index of a log grows by a few bytes for each line.
         good = b < 1.1 * a + 200 * minutes and report["rounds"] > 0.9 * 6000 * minutes and report["status"] == 0

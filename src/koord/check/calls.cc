@@ -49,7 +49,7 @@ TypeId Checker::Call(ExprId id, const lang::Expr& e) {
     const Variable& v = model_.variables[static_cast<size_t>(port)];
     if (v.function >= 0) return CallFunction(id, e, static_cast<size_t>(v.function));
     diagnostics_.Report(Kind::kKoordNotCallable, callee.span, fmt::format("`{}` cannot be called", name))
-        .At(v.span, fmt::format("declared as a `{}`", model_.types.Name(v.type)))
+        .At(v.span, fmt::format("declared as {}", model_.types.WithArticle(v.type)))
         .Help("a sensor of type `PathPlanner` is called like a function");
     for (size_t i = 1; i < e.args.size(); ++i) Expr(e.args[i]);
     return model_.types.error();
@@ -168,8 +168,8 @@ TypeId Checker::CallFunction(ExprId id, const lang::Expr& e, size_t index) {
     const Function& f = model_.functions[index];
     auto& report = diagnostics_.Report(
         Kind::kKoordTypeMismatch, exprs_[e.args[i + 1]].span,
-        fmt::format("argument {} of `{}` must be a `{}`", i + 1, f.name, types.Name(wanted)));
-    report.Under(fmt::format("this is a `{}`", types.Name(given)));
+        fmt::format("argument {} of `{}` must be {}", i + 1, f.name, types.WithArticle(wanted)));
+    report.Under(fmt::format("this is {}", types.WithArticle(given)));
     report.At(f.span, f.def != nullptr ? "declared here" : "its first use decided so");
     if (f.def == nullptr) report.Help(fmt::format("declare it: `def fun {}(...) -> ...`", f.name));
   }
@@ -223,7 +223,7 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
       if (!Arity(e, 1, 1, name)) return types.integer();
       const TypeId list = Expr(e.args[1]);
       if (!types.Unify(list, types.List(types.FreshVariable()))) {
-        Mismatch(exprs_[e.args[1]].span, fmt::format("`len` needs a list, not a `{}`", types.Name(list)));
+        Mismatch(exprs_[e.args[1]].span, fmt::format("`len` needs a list, not {}", types.WithArticle(list)));
       }
       return types.integer();
     }
@@ -238,7 +238,7 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
         all_int = all_int && types.Is(t, TypeKind::kInt);
         if (!types.Coerce(t, types.real())) {
           Mismatch(exprs_[e.args[i]].span,
-                   fmt::format("`{}` needs numbers, not a `{}`", name, types.Name(t)));
+                   fmt::format("`{}` needs numbers, not {}", name, types.WithArticle(t)));
         }
       }
       return all_int ? types.integer() : types.real();
@@ -293,7 +293,7 @@ TypeId Checker::CallBuiltin(ExprId id, const lang::Expr& e, Builtin builtin) {
       const TypeId list = Expr(e.args[1]);
       if (!types.Unify(list, types.List(types.FreshVariable())))
         return Mismatch(exprs_[e.args[1]].span,
-                        fmt::format("only lists have slices, not a `{}`", types.Name(list)));
+                        fmt::format("only lists have slices, not {}", types.WithArticle(list)));
       NeedType(e.args[2], types.integer(), "the start of a slice");
       if (e.args.size() > 3) NeedType(e.args[3], types.integer(), "the end of a slice");
       return list;

@@ -77,7 +77,7 @@ void Checker::NeedBool(ExprId e, std::string_view what) {
   const TypeId type = Expr(e);
   if (model_.types.Unify(type, model_.types.boolean())) return;
   diagnostics_.Report(Kind::kKoordNotBoolean, exprs_[e].span, fmt::format("{} must be true or false", what))
-      .Under(fmt::format("this is a `{}`", model_.types.Name(type)));
+      .Under(fmt::format("this is {}", model_.types.WithArticle(type)));
 }
 
 bool Checker::IsArrayLiteral(ExprId e, TypeId wanted) const {
@@ -93,7 +93,7 @@ void Checker::NeedArray(ExprId e, TypeId array, std::string_view what) {
   const bool number = std::ranges::all_of(length, [](unsigned char c) { return std::isdigit(c) != 0; });
   if (!number || length != std::to_string(list.args.size())) {
     auto& report = diagnostics_.Report(Kind::kKoordTypeMismatch, list.span,
-                                       fmt::format("{} must be a `{}`", what, model_.types.Name(array)));
+                                       fmt::format("{} must be {}", what, model_.types.WithArticle(array)));
     report.Under(fmt::format("these are {} items", list.args.size()));
     if (!number) report.Help("how many items there are is known only when it runs: assign them in `init`");
   }
@@ -105,8 +105,8 @@ void Checker::NeedType(ExprId e, TypeId wanted, std::string_view what) {
   const TypeId type = Expr(e);
   if (model_.types.Coerce(type, wanted)) return;
   auto& report = diagnostics_.Report(Kind::kKoordTypeMismatch, exprs_[e].span,
-                                     fmt::format("{} must be a `{}`", what, model_.types.Name(wanted)));
-  report.Under(fmt::format("this is a `{}`", model_.types.Name(type)));
+                                     fmt::format("{} must be {}", what, model_.types.WithArticle(wanted)));
+  report.Under(fmt::format("this is {}", model_.types.WithArticle(type)));
 }
 
 TypeId Checker::Unary(const lang::Expr& e) {
@@ -119,7 +119,7 @@ TypeId Checker::Unary(const lang::Expr& e) {
   if (types.Is(type, TypeKind::kVariable)) types.Unify(type, types.real());
   if (types.IsNumeric(type) || types.Is(type, TypeKind::kError) || types.Resolve(type) == types.pos())
     return type;
-  return Mismatch(e.span, fmt::format("`-` needs a number, not a `{}`", types.Name(type)));
+  return Mismatch(e.span, fmt::format("`-` needs a number, not {}", types.WithArticle(type)));
 }
 
 TypeId Checker::Binary(const lang::Expr& e) {
@@ -161,8 +161,9 @@ TypeId Checker::Arithmetic(const lang::Expr& e, TypeId a, TypeId b) {
   if (e.text == "+" && (types.Is(a, TypeKind::kString) || types.Is(b, TypeKind::kString)))
     return types.string();
   diagnostics_
-      .Report(Kind::kKoordTypeMismatch, e.span,
-              fmt::format("`{}` does not work on a `{}` and a `{}`", e.text, types.Name(a), types.Name(b)))
+      .Report(
+          Kind::kKoordTypeMismatch, e.span,
+          fmt::format("`{}` does not work on {} and {}", e.text, types.WithArticle(a), types.WithArticle(b)))
       .At(exprs_[e.args[0]].span, fmt::format("`{}`", types.Name(a)))
       .At(exprs_[e.args[1]].span, fmt::format("`{}`", types.Name(b)));
   return types.error();
@@ -182,12 +183,12 @@ TypeId Checker::Comparison(const lang::Expr& e, TypeId a, TypeId b) {
     if (types.Is(a, TypeKind::kVariable)) types.Unify(a, types.real());
     if (types.IsNumeric(a)) return types.boolean();
     diagnostics_.Report(Kind::kKoordTypeMismatch, e.span,
-                        fmt::format("`{}` compares numbers, not a `{}`", e.text, types.Name(a)));
+                        fmt::format("`{}` compares numbers, not {}", e.text, types.WithArticle(a)));
     return types.boolean();
   }
   diagnostics_
       .Report(Kind::kKoordTypeMismatch, e.span,
-              fmt::format("a `{}` cannot be compared with a `{}`", types.Name(a), types.Name(b)))
+              fmt::format("{} cannot be compared with {}", types.WithArticle(a), types.WithArticle(b)))
       .At(exprs_[e.args[0]].span, fmt::format("`{}`", types.Name(a)))
       .At(exprs_[e.args[1]].span, fmt::format("`{}`", types.Name(b)));
   return types.boolean();
@@ -212,7 +213,7 @@ TypeId Checker::Membership(const lang::Expr& e, TypeId a) {
     }
     if (!types.Unify(a, types.pos())) {
       Mismatch(exprs_[e.args[0]].span,
-               fmt::format("only a `pos` can be in a `rect`, not a `{}`", types.Name(a)));
+               fmt::format("only a `pos` can be in a `rect`, not {}", types.WithArticle(a)));
     }
     return types.boolean();
   }
@@ -220,12 +221,12 @@ TypeId Checker::Membership(const lang::Expr& e, TypeId a) {
   const TypeId element = types.FreshVariable();
   if (types.Is(b, TypeKind::kError)) return types.boolean();
   if (!types.Is(b, TypeKind::kList) && !types.Is(b, TypeKind::kVariable)) {
-    Mismatch(set.span, fmt::format("`in` needs a list, `ID` or `rect(a, b)`, not a `{}`", types.Name(b)));
+    Mismatch(set.span, fmt::format("`in` needs a list, `ID` or `rect(a, b)`, not {}", types.WithArticle(b)));
     return types.boolean();
   }
   types.Unify(b, types.List(element));
   if (!types.Coerce(a, element)) {
-    Mismatch(e.span, fmt::format("a `{}` cannot be in a `{}`", types.Name(a), types.Name(b)));
+    Mismatch(e.span, fmt::format("{} cannot be in {}", types.WithArticle(a), types.WithArticle(b)));
   }
   return types.boolean();
 }
@@ -268,8 +269,8 @@ TypeId Checker::Any(const lang::Expr& e) {
     element = types.FreshVariable();
     if (!types.Unify(list, types.List(element))) {
       return Mismatch(exprs_[e.args[0]].span,
-                      fmt::format("`any` chooses from a list or a range such as `0..5`, not from a `{}`",
-                                  types.Name(list)));
+                      fmt::format("`any` chooses from a list or a range such as `0..5`, not from {}",
+                                  types.WithArticle(list)));
     }
   }
   const auto named = TypeNamed(e.text);
@@ -335,8 +336,8 @@ TypeId Checker::Quantifier(ExprId id, const lang::Expr& e) {
       const TypeId list = Expr(binder.domain);
       type = types.FreshVariable();
       if (!types.Is(list, TypeKind::kError) && !types.Unify(list, types.List(type))) {
-        Mismatch(domain->span, fmt::format("`{}` ranges over `ID`, a type or a list, not over a `{}`", e.text,
-                                           types.Name(list)));
+        Mismatch(domain->span, fmt::format("`{}` ranges over `ID`, a type or a list, not over {}", e.text,
+                                           types.WithArticle(list)));
         type = types.error();
       }
     }
@@ -375,8 +376,8 @@ TypeId Checker::List(const lang::Expr& e) {
     if (types.Is(element, TypeKind::kInt) && types.Is(type, TypeKind::kFloat)) element = types.real();
     if (!types.Coerce(type, element)) {
       diagnostics_.Report(Kind::kKoordTypeMismatch, exprs_[item].span, "the items of a list have one type")
-          .Under(fmt::format("this is a `{}`", types.Name(type)))
-          .At(exprs_[e.args[0]].span, fmt::format("this is a `{}`", types.Name(element)));
+          .Under(fmt::format("this is {}", types.WithArticle(type)))
+          .At(exprs_[e.args[0]].span, fmt::format("this is {}", types.WithArticle(element)));
     }
   }
   return types.List(element);

@@ -50,7 +50,7 @@ TypeId Checker::Fold(ExprId id, const lang::Expr& e) {
     if (!types.IsNumeric(body) && !point && !types.Is(body, TypeKind::kError)) {
       auto& report = diagnostics_.Report(Kind::kKoordTypeMismatch, exprs_[e.args[0]].span,
                                          fmt::format("the body of `{}` must be a number", e.text));
-      report.Under(fmt::format("this is a `{}`", types.Name(body)));
+      report.Under(fmt::format("this is {}", types.WithArticle(body)));
       // The body reaches as far as it can.
       if (types.Is(body, TypeKind::kBool))
         report.Help(fmt::format("write `({} i in ID: ...) <= 5` with brackets", e.text));

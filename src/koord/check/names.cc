@@ -177,7 +177,7 @@ TypeId Checker::FieldOf(ExprId id, const lang::Expr& e, TypeId base) {
     return model_.functions[f].result;
   }
   diagnostics_.Report(Kind::kKoordUnknownMember, e.span, fmt::format("`{}` has no members", types.Name(base)))
-      .At(exprs_[e.args[0]].span, fmt::format("this is a `{}`", types.Name(base)));
+      .At(exprs_[e.args[0]].span, fmt::format("this is {}", types.WithArticle(base)));
   return types.error();
 }
 
@@ -231,7 +231,7 @@ TypeId Checker::Index(ExprId id, const lang::Expr& e) {
   }
   diagnostics_
       .Report(Kind::kKoordNotIndexable, e.span, fmt::format("`{}` cannot be indexed", types.Name(type)))
-      .At(base.span, fmt::format("this is a `{}`", types.Name(type)));
+      .At(base.span, fmt::format("this is {}", types.WithArticle(type)));
   return types.error();
 }
 

@@ -13,6 +13,8 @@ namespace rondo::reach {
 
 namespace {
 
+constexpr size_t kGroups = 64;  // of starts that each judge gets at once
+
 double Uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
 std::vector<double> Draw(const interval::Box& box, std::mt19937_64& random) {
@@ -148,41 +150,47 @@ size_t RunsNeeded(double epsilon, double confidence) {
 base::Result<Calibration> Calibrate(std::span<const Judge> judges, const interval::Box& initial, size_t runs,
                                     size_t group, double confidence, uint64_t seed,
                                     const base::StopToken& stop) {
-  // All starts come from one stream, whatever the number of threads.
-  std::mt19937_64 random(seed);
-  std::vector<std::vector<double>> starts;
-  for (size_t r = 0; r < runs; ++r) starts.push_back(Draw(initial, random));
   Calibration result;
   result.confidence = confidence;
   result.seed = seed;
   std::mutex mutex;
   std::string trouble;
   size_t first_failure = runs;
-  const size_t groups = (runs + group - 1) / group;
-  base::ParallelFor(judges.size(), static_cast<unsigned>(judges.size()), [&](size_t j) {
-    const auto failed = std::make_unique<bool[]>(group);
-    for (size_t g = j; g < groups; g += judges.size()) {
-      const size_t first = g * group;
-      const size_t count = std::min(group, runs - first);
-      const bool stopped = stop.StopRequested();
-      const auto judged =
-          stopped ? base::Result<bool>(base::Error{"stopped"})
-                  : judges[j](std::span(starts).subspan(first, count), std::span(failed.get(), count));
-      const std::scoped_lock lock(mutex);
-      if (!judged.ok()) {
-        trouble = judged.error().message;
-        return;
+  // All starts come from one stream, whatever the number of threads; some at a time, so that many of them need no memory and
+  // nobody waits for them.
+  std::mt19937_64 random(seed);
+  std::vector<std::vector<double>> starts;
+  const size_t most = judges.size() * group * kGroups;
+  for (size_t begin = 0; begin < runs && trouble.empty(); begin += most) {
+    starts.clear();
+    for (size_t r = begin; r < std::min(runs, begin + most); ++r) starts.push_back(Draw(initial, random));
+    const size_t groups = (starts.size() + group - 1) / group;
+    base::ParallelFor(judges.size(), static_cast<unsigned>(judges.size()), [&](size_t j) {
+      const auto failed = std::make_unique<bool[]>(group);
+      for (size_t g = j; g < groups; g += judges.size()) {
+        const size_t first = g * group;
+        const size_t count = std::min(group, starts.size() - first);
+        const bool stopped = stop.StopRequested();
+        const auto judged =
+            stopped ? base::Result<bool>(base::Error{"stopped"})
+                    : judges[j](std::span(starts).subspan(first, count), std::span(failed.get(), count));
+        const std::scoped_lock lock(mutex);
+        if (!judged.ok()) {
+          trouble = judged.error().message;
+          return;
+        }
+        result.runs += count;
+        for (size_t i = 0; i < count; ++i) {
+          if (!failed[i]) continue;
+          ++result.failures;
+          if (begin + first + i > first_failure) continue;
+          first_failure = begin + first + i;
+          result.worst = starts[first + i];
+        }
       }
-      result.runs += count;
-      for (size_t i = 0; i < count; ++i) {
-        if (!failed[i]) continue;
-        ++result.failures;
-        first_failure = std::min(first_failure, first + i);
-      }
-    }
-  });
+    });
+  }
   if (!trouble.empty()) return base::Error{trouble};
-  if (first_failure < runs) result.worst = starts[first_failure];
   result.epsilon = ClopperPearson(result.failures, result.runs, confidence);
   return result;
 }

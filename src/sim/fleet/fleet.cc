@@ -249,6 +249,8 @@ class Reader : Tables {
     if (space.starts_with('/')) space.erase(0, 1);
     if (!space.empty() && !ros::IsName(space))
       Wrong(At(*t.get("namespace")), "a namespace has letters, digits, `_` and `/`");
+    if (space == "rondo" || space.starts_with("rondo/"))
+      Wrong(At(*t.get("namespace")), "the namespace `rondo` is taken: robots agree on rounds there");
   }
 
   // Where its own odometry begins: where it starts, or at a point.

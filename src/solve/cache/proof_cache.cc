@@ -67,7 +67,9 @@ void ProofCache::Store(const std::string& question, const Entry& entry) const {
   std::string text = fmt::format("{}{}\n{}\n", kMagic, entry.engine, entry.core.size());
   for (const std::string& group : entry.core) text += group + "\n";
   text += question;
-  const auto ignored = base::WriteFileAtomically(PathOf(question), text);
+  const std::filesystem::path path = PathOf(question);
+  if (!base::MakeFolders(path.parent_path()).ok()) return;
+  const auto ignored = base::WriteFileAtomically(path, text);
   static_cast<void>(ignored.ok());
 }
 

@@ -21,6 +21,17 @@ SmtLibSolver::SmtLibSolver(const std::string& command) : name_(command) {
   if (program == "z3") command_.insert(command_.end(), {"-in", "-smt2"});
 }
 
+base::Result<bool> SmtLibSolver::Try() const {
+  if (command_.empty()) return base::Error{"no command was given"};
+  const base::StopToken stop;
+  const auto output = RunProcess(command_, "(set-logic ALL)\n(check-sat)\n", std::chrono::seconds(10), stop);
+  if (!output.ok()) return output.error();
+  for (const char* answer : {"sat", "unknown"}) {
+    if (output.value().text.find(answer) != std::string::npos) return true;
+  }
+  return base::Error{fmt::format("`{}` does not answer questions in SMT-LIB 2 on its standard input", name_)};
+}
+
 Answer SmtLibSolver::Check(const Query& query, const Budget& budget, const base::StopToken& stop) const {
   if (command_.empty()) return Unknown{"no command was given"};
   const auto output = RunProcess(command_, ToSmtLib(query), budget.time, stop);

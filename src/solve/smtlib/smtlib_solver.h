@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/result.h"
 #include "solve/solver.h"
 
 /// Solvers that are other programs.
@@ -14,6 +15,8 @@ class SmtLibSolver : public Solver {
   explicit SmtLibSolver(const std::string& command);
 
   std::string name() const override { return name_; }
+  /// Asks it nothing, to see whether it answers at all. @error why it does not.
+  base::Result<bool> Try() const;
   Answer Check(const Query& query, const Budget& budget, const base::StopToken& stop) const override;
 
  private:

@@ -35,10 +35,10 @@ class Sensor {
 class Actuator {
  public:
   virtual ~Actuator() = default;
-  /// Sets it to these numbers, as in `Sample`: each time that the program says something, and is allowed to. Orders of other
-  /// ports wait for it: to be done within a few milliseconds.
+  /// Sets it to these numbers, as in `Sample`: each time that the program says something, and is allowed to. A thread of its own
+  /// calls this: of what is said meanwhile, the latest counts.
   virtual void Write(const std::vector<double>& numbers) = 0;
-  /// Makes it safe: the robot ends.
+  /// Makes it safe: the robot ends. Called once, behind the last `Write`.
   virtual void Safe() noexcept = 0;
 };
 
