@@ -14,6 +14,9 @@ enum class Colour : bool { kOff, kOn };
 /// Returns the diagnostic with its source lines, carets, labels, notes, helps and fixes, ending in a newline.
 std::string RenderText(const SourceSet& sources, const Diagnostic& diagnostic, Colour colour);
 
+/// Returns the diagnostic as one line, without its sources: `error: a.koord:3:1: message [kind]`.
+std::string RenderLine(const SourceSet& sources, const Diagnostic& diagnostic);
+
 /// Returns {kind, severity, message, file, line, column, end_line, end_column, label, labels, notes, help,
 /// fixes}; file and positions are absent when the diagnostic is not about one place.
 nlohmann::json RenderJson(const SourceSet& sources, const Diagnostic& diagnostic);

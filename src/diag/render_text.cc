@@ -49,6 +49,13 @@ constexpr uint32_t kWidest = 160;  // code points of a line that are shown
 constexpr std::string_view kCut = "\xE2\x80\xA6",
                            kUnknown = "\xEF\xBF\xBD";  // an ellipsis, a replacement character
 
+// What a message quotes may be as long as a file.
+std::string Shown(std::string_view text, size_t longest = 300) {
+  std::string shown = Escaped(text.substr(0, longest));
+  if (text.size() > longest) shown += kCut;
+  return shown;
+}
+
 // One character for each code point, so that carets stay below what they point at: a space for a tab, and one that says
 // so for what cannot be shown.
 std::string Flatten(std::string_view line) {
@@ -99,7 +106,7 @@ std::string RenderText(const SourceSet& sources, const Diagnostic& d, Colour col
   const Painter paint{colour == Colour::kOn};
   const std::string_view tone = SeverityColour(d.severity);
   std::string out = fmt::format("{}{} [{}]\n", paint(tone, fmt::format("{}: ", SeverityName(d.severity))),
-                                Escaped(d.message), Info(d.kind).id);
+                                Shown(d.message), Info(d.kind).id);
 
   // The primary file first, then the others in the order of their labels.
   std::vector<FileId> files;
@@ -140,7 +147,7 @@ std::string RenderText(const SourceSet& sources, const Diagnostic& d, Colour col
           std::min(mark.width, std::max(1U, part.last + 1 - std::min(part.last, mark.column - 1))),
           mark.primary ? '^' : '-');
       out += fmt::format("{} {:{}}{}{}\n", bar, "", column, paint(mark.primary ? tone : "34", line),
-                         mark.message.empty() ? "" : " " + Escaped(mark.message));
+                         mark.message.empty() ? "" : " " + Shown(mark.message));
     }
   }
   for (const std::string& note : d.notes) {
@@ -154,7 +161,8 @@ std::string RenderText(const SourceSet& sources, const Diagnostic& d, Colour col
       start = end + 1;
     }
   }
-  for (const std::string& help : d.helps) out += fmt::format("{} {}\n", paint("32", "help:"), Escaped(help));
+  for (const std::string& help : d.helps)
+    out += fmt::format("{} {}\n", paint("32", "help:"), Shown(help, 1000));
   for (const FixIt& fix : d.fixes) {
     const Position begin = sources.Locate(fix.span.file, fix.span.begin);
     const Position end = sources.Locate(fix.span.file, fix.span.end);
@@ -169,6 +177,17 @@ std::string RenderText(const SourceSet& sources, const Diagnostic& d, Colour col
         begin.column - 1, paint("32", std::string(std::max(1u, CountCodePoints(fix.replacement)), '~')));
   }
   return out;
+}
+
+std::string RenderLine(const SourceSet& sources, const Diagnostic& d) {
+  std::string place;
+  if (d.span.file.valid()) {
+    const Position at = sources.Locate(d.span.file, d.span.begin);
+    place = fmt::format("{}:{}:{}: ", Escaped(sources.path(d.span.file)), at.line, at.column);
+  }
+  std::string message = Shown(d.message);
+  std::ranges::replace(message, '\n', ' ');
+  return fmt::format("{}: {}{} [{}]\n", SeverityName(d.severity), place, message, Info(d.kind).id);
 }
 
 }  // namespace rondo::diag

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <sstream>
 
 #include "base/version.h"
 #include "driver/terminal.h"
@@ -36,6 +37,13 @@ std::string VersionText() {
                      commit.empty() ? "" : fmt::format(" (commit {})", commit));
 }
 
+// A reader that went away is no error; a full disk is.
+ExitStatus Written(ExitStatus status) {
+  if ((std::fflush(stdout) == 0 && std::ferror(stdout) == 0) || errno == EPIPE) return status;
+  PrintFailure("cannot write the output");
+  return status == ExitStatus::kEstablished ? ExitStatus::kRejected : status;
+}
+
 }  // namespace
 
 int Main(int argc, char** argv) {
@@ -53,8 +61,11 @@ int Main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return static_cast<int>(code == 0 ? ExitStatus::kEstablished : ExitStatus::kUsage);
+    std::ostringstream out, wrong;
+    const int code = app.exit(error, out, wrong);
+    Print(out.str());
+    PrintError(wrong.str());
+    return static_cast<int>(Written(code == 0 ? ExitStatus::kEstablished : ExitStatus::kUsage));
   } catch (const std::bad_alloc&) {
     PrintFailure("out of memory");
     return static_cast<int>(ExitStatus::kUndecided);
@@ -62,12 +73,7 @@ int Main(int argc, char** argv) {
     PrintFailure(fmt::format("bug: {}", error.what()));
     return static_cast<int>(ExitStatus::kBug);
   }
-  // A reader that went away is no error; a full disk is.
-  if ((std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && errno != EPIPE &&
-      status == ExitStatus::kEstablished) {
-    PrintFailure("cannot write the output");
-    return static_cast<int>(ExitStatus::kRejected);
-  }
+  status = Written(status);
   if (solve::z3::LeftBehind()) {
     std::fflush(nullptr);
     std::_Exit(static_cast<int>(status));

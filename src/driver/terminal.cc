@@ -48,21 +48,28 @@ diag::Colour ErrorColour() {
 }
 
 void PrintDiagnostics(const diag::SourceSet& sources, const diag::Diagnostics& diagnostics) {
-  constexpr ptrdiff_t kMostLines = 95;  // of what nobody would read to its end
+  // Nobody reads many pages: the first ones as a whole, then each in a line, then how many there are.
+  constexpr ptrdiff_t kWhole = 76, kMost = 96;  // lines
   std::string text;
-  size_t errors = 0, warnings = 0, left = 0;
+  const size_t errors = diagnostics.errors();  // also those that were not kept
+  size_t warnings = 0, left = 0;
   ptrdiff_t lines = 0;
+  bool whole = true;
   for (const diag::Diagnostic& d : diagnostics.Sorted()) {
-    if (d.severity == diag::Severity::kError) ++errors;
     if (d.severity == diag::Severity::kWarning) ++warnings;
-    const std::string one = diag::RenderText(sources, d, ErrorColour()) + "\n";
-    lines += std::ranges::count(one, '\n');
-    if (lines <= kMostLines || text.empty())
-      text += one;
-    else
+    std::string one = diag::RenderText(sources, d, ErrorColour()) + "\n";
+    whole = whole && (text.empty() || lines + std::ranges::count(one, '\n') <= kWhole);
+    if (!whole) one = diag::RenderLine(sources, d);
+    const ptrdiff_t more = std::ranges::count(one, '\n');
+    if (!text.empty() && lines + more > kMost) {
       ++left;
+      continue;
+    }
+    lines += more;
+    text += one;
   }
   if (left > 0) text += fmt::format("... and {} more\n", left);
+  if (!whole) text += "\n";
   if (errors > 0 && warnings > 0)
     text += fmt::format("{}, {}\n", base::Counted(errors, "error"), base::Counted(warnings, "warning"));
   else if (errors > 0)

@@ -142,7 +142,7 @@ done = rondo("prove", "--no-cache", "--smt-out", "/dev/null/x", handover)
 check("a folder that cannot be written", done.returncode == 1 and "cannot use the folder" in done.stderr, done.stderr)
 
 # What was never meant as input: one message, soon, and short.
-garbage = bytes(random.Random(1).randrange(256) for _ in range(200_000))
+garbage = random.Random(1).randbytes(200_000)
 controls = "invariant \x1b[31mred\x1b[0m: $ \x07\n"
 others = {"garbage": (garbage, "is no text"), "trace": (b"\x89MCAP0\r\n" + garbage, "is an MCAP trace"), "picture": (b"\x89PNG\r\n\x1a\n" + garbage, "is a PNG picture"),
           "library": (b"\x7fELF" + garbage, "is a program or library"), "utf16": ("\ufeffinvariant".encode("utf-16-le"), "is text in UTF-16"),
@@ -163,7 +163,7 @@ for name, (content, says) in others.items():
 done = rondo("simulate", "models/room.rondo")
 check("a choreography for a program", done.returncode == 1 and "is a file of robots and choreographies" in done.stderr, done.stderr)
 # Text that is none of the language, long, on one line, deeply nested, with signs that terminals obey.
-for name, text in (("signs", "$ % ^ ~ ` " * 20_000), ("words", "some words that mean nothing at all\n" * 5_500), ("brackets", "(" * 200_000), ("one", "invariant x: " + "a + " * 50_000 + "a\n"),
+for name, text in (("signs", "$ % ^ ~ ` " * 20_000), ("words", "some words that mean nothing at all\n" * 5_500), ("word", "D" * 200_000), ("brackets", "(" * 200_000), ("one", "invariant x: " + "a + " * 50_000 + "a\n"),
                    ("braces", "{ } " * 50_000), ("strings", '"' * 200_000), ("indented", "".join(" " * (i % 40) + "x\n" for i in range(9_000))),
                    ("assignments", "E:\n    eff:\n" + "        nothing = nowhere\n" * 7_000), ("controls", controls * 3_000), ("numbers", "1.2.3 " * 33_000)):
     for suffix in (".koord", ".rondo", ".smt2"):
@@ -233,7 +233,7 @@ for file in files:
     answer = subprocess.run(["cvc5", "--lang=smt2", str(file)], capture_output=True, text=True, timeout=300).stdout
     check(f"cvc5 on {file.name}", answer.strip() == "unsat", answer)
 done = rondo("prove", "--no-cache", LINEFORM, "--smt-out", "/proc/nowhere")
-check("smt-out into nowhere", done.returncode == 1 and "could not write" in done.stdout, done.stdout)
+check("smt-out into nowhere", done.returncode == 1 and "cannot use the folder" in done.stderr, done.stderr)
 
 # JSON says what the text says.
 report = json.loads(rondo("prove", "--json", "examples/koord/mutex_naive.koord").stdout)
