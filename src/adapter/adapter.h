@@ -17,9 +17,9 @@ struct Site {
 
 /// Is what a sensor read: one number for a `float`, 1 or 0 for a `bool`, three in metres for a `pos`.
 struct Sample {
-  std::vector<double> numbers;
+  std::vector<double> numbers = {};
   double age = 0;       ///< seconds since it was so
-  std::string problem;  ///< for people; not empty: it cannot be relied on, and the robot skips
+  std::string problem = {};  ///< for people; not empty: it cannot be relied on, and the robot skips
 };
 
 /// Reads one sensor of one robot.
