@@ -18,7 +18,7 @@ struct Site {
 /// Is what a sensor read: one number for a `float`, 1 or 0 for a `bool`, three in metres for a `pos`.
 struct Sample {
   std::vector<double> numbers = {};
-  double age = 0;       ///< seconds since it was so
+  double age = 0;            ///< seconds since it was so
   std::string problem = {};  ///< for people; not empty: it cannot be relied on, and the robot skips
 };
 

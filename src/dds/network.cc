@@ -6,33 +6,14 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "base/xml.h"
+
 namespace rondo::dds {
 namespace {
 
 std::string Variable(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;
-}
-
-// What stands in an attribute or between tags.
-std::string Escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
 }
 
 base::Error Wrong(const char* name, const std::string& value, const char* needs) {
@@ -74,13 +55,13 @@ std::string Configuration(const Network& network) {
   const std::string interface = loopback ? "lo" : network.interface;
   std::string general;
   if (!interface.empty())
-    general = fmt::format(R"(<Interfaces><NetworkInterface name="{}"{}/></Interfaces>)", Escaped(interface),
-                          loopback ? R"( multicast="true")" : "");
+    general = fmt::format(R"(<Interfaces><NetworkInterface name="{}"{}/></Interfaces>)",
+                          base::XmlEscaped(interface), loopback ? R"( multicast="true")" : "");
   general +=
       fmt::format("<AllowMulticast>{}</AllowMulticast>", network.profile == Profile::kWifi ? "spdp" : "true");
   std::string peers;
   for (const std::string& peer : network.peers)
-    peers += fmt::format(R"(<Peer Address="{}"/>)", Escaped(peer));
+    peers += fmt::format(R"(<Peer Address="{}"/>)", base::XmlEscaped(peer));
   // Nodes of ROS 2 that stay on this machine look for others there at their ports, one by one.
   if (loopback) peers += R"(<Peer Address="127.0.0.1"/>)";
   // Who hears nothing asks after milliseconds, not after a hundred.

@@ -12,6 +12,7 @@
 
 #include "dds/participant.h"
 #include "deploy/echo.h"
+#include "platform/ports.h"
 #include "platform/topics.h"
 #include "ros/nav_msgs.h"
 #include "ros/sensor_msgs.h"

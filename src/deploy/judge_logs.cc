@@ -7,6 +7,7 @@
 #include <set>
 
 #include "koord/node/slow_calls.h"
+#include "platform/ports.h"
 #include "platform/topics.h"
 #include "sim/monitor.h"
 #include "transport/mailbox.h"

@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "deploy/echo.h"
+#include "platform/ports.h"
 #include "platform/senses.h"
 #include "ros/names.h"
 #include "security/authority.h"
@@ -160,6 +161,7 @@ std::vector<Enclave> EnclavesOf(const koord::Model& model, const sim::Fleet& fle
     }
     const Topic odometry = platform::OdometryOf(fleet, r);
     Add(bodies.publishes, odometry);
+    if (odometry.carries == platform::Carries::kPx4Odometry) Add(robot.subscribes, odometry);
     for (const sim::Port& port : ports) {
       const auto topic = platform::TopicOf(model, fleet, r, port);
       if (!topic || !sim::IsActuator(model, port)) continue;

@@ -11,6 +11,7 @@
 #include "deploy/round_thread.h"
 #include "deploy/status.h"
 #include "platform/orders.h"
+#include "platform/ports.h"
 #include "platform/senses.h"
 #include "ros/names.h"
 #include "ros/rcl_interfaces.h"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "platform/ports.h"
 #include "sim/scanner.h"
 
 namespace rondo::deploy {

@@ -4,34 +4,13 @@
 
 #include <cmath>
 
+#include "base/xml.h"
+
 namespace rondo::draw {
 namespace {
 
 constexpr double kCharacter = 6.6;  // of 11 px in the font below, on average
 constexpr double kHead = 7;
-
-std::string Escape(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
 
 std::string_view Name(Svg::Anchor anchor) {
   switch (anchor) {
@@ -130,8 +109,8 @@ void Svg::Text(double x, double y, std::string_view text, Anchor anchor, double 
   if (bold) body_ += R"( font-weight="bold")";
   if (colour != "black") body_ += fmt::format(R"( fill="{}")", colour);
   body_ += '>';
-  if (shown != text) body_ += "<title>" + Escape(text) + "</title>";
-  body_ += Escape(shown) + "</text>\n";
+  if (shown != text) body_ += "<title>" + base::XmlEscaped(text) + "</title>";
+  body_ += base::XmlEscaped(shown) + "</text>\n";
 }
 
 std::string Svg::Finish(double width, double height, std::string_view title) const {
@@ -140,7 +119,7 @@ std::string Svg::Finish(double width, double height, std::string_view title) con
              "font-family=\"sans-serif\" font-size=\"11\">\n"
              "<title>{2}</title>\n"
              "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-             width, height, Escape(title)) +
+             width, height, base::XmlEscaped(title)) +
          body_ + "</svg>\n";
 }
 

@@ -72,7 +72,10 @@ base::Result<bool> Drivers::Begin(dds::Participant& participant, size_t r) {
     const auto topic = TopicOf(model_, fleet_, r, port);
     if (!topic || !topic->library.empty()) continue;
     if (topic->carries == Carries::kPx4Setpoint) setpoints = topic->name;
-    if (topic->carries == Carries::kPx4Setpoint || topic->carries == Carries::kPx4Odometry) continue;
+    // The autopilot speaks for itself; where frames are is told of all.
+    if (topic->carries == Carries::kPx4Setpoint || topic->carries == Carries::kPx4Odometry ||
+        topic->carries == Carries::kTransform)
+      continue;
     const auto made = sim::IsActuator(model_, port) ? Listen(participant, node, r, port)
                                                     : Speak(participant, node, r, &port, *topic);
     if (!made.ok()) return made.error();
@@ -190,7 +193,9 @@ void Drivers::Tell(const std::vector<sim::Rays>& scans) {
   for (const Voice& voice : voices_) {
     switch (voice.topic.carries) {
       case Carries::kOdometry:
-        Odometry(voice);
+      case Carries::kPoseSeen:
+      case Carries::kCovariance:
+        Pose(voice);
         break;
       case Carries::kScan:
         if (!scans.empty()) Scan(voice, scans[voice.robot]);
@@ -235,29 +240,34 @@ ros::geometry_msgs::Pose Seen(const ros::geometry_msgs::Pose& pose, const sim::O
 
 }  // namespace
 
-void Drivers::Odometry(const Voice& voice) {
+void Drivers::Pose(const Voice& voice) {
   const Body& body = *bodies_[voice.robot];
+  const auto& origin = fleet_.robots[voice.robot].origin;
+  const auto q = body.rotation();
   ros::nav_msgs::Odometry m;
   m.header = Header(fleet_.ros.frame);
   m.child_frame_id = BaseOf(fleet_, voice.robot);
-  const Point p = body.position(), v = body.velocity();
-  const auto q = body.rotation();
-  m.pose.pose.position = PointOf(p);
+  m.pose.pose.position = PointOf(body.position());
   m.pose.pose.orientation = {q[0], q[1], q[2], q[3]};
   // In the frame of the body (nav_msgs/Odometry).
   ros::geometry_msgs::Quaternion back = m.pose.pose.orientation;
   back.w = -back.w;
-  ros::geometry_msgs::Vector3 world;
-  world.x = v[0];
-  world.y = v[1];
-  world.z = v[2];
-  m.twist.twist.linear = Rotated(back, world);
+  const Point v = body.velocity();
+  m.twist.twist.linear = Rotated(back, {v[0], v[1], v[2]});
   // As it counts from where it began.
-  if (const auto& origin = fleet_.robots[voice.robot].origin) {
+  if (origin) {
     m.header.frame_id = fleet_.robots[voice.robot].node_namespace + "/odom";
     m.pose.pose = Seen(m.pose.pose, *origin);
   }
-  (void)voice.publisher->Publish(m).ok();
+  if (voice.topic.carries == Carries::kOdometry) return (void)voice.publisher->Publish(m).ok();
+  ros::geometry_msgs::PoseWithCovarianceStamped pose;
+  pose.header = m.header;
+  pose.pose = m.pose;
+  if (voice.topic.carries == Carries::kCovariance) return (void)voice.publisher->Publish(pose).ok();
+  ros::geometry_msgs::PoseStamped bare;
+  bare.header = m.header;
+  bare.pose = m.pose.pose;
+  (void)voice.publisher->Publish(bare).ok();
 }
 
 void Drivers::Scan(const Voice& voice, const sim::Rays& rays) {

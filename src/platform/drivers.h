@@ -64,7 +64,7 @@ class Drivers {
   base::Result<bool> Speak(dds::Participant& participant, size_t node, size_t robot, const sim::Port* port,
                            const Topic& topic);
   void Hear(size_t robot, const sim::Port& port, const Topic& topic, std::string_view bytes);
-  void Odometry(const Voice& voice);
+  void Pose(const Voice& voice);
   void Scan(const Voice& voice, const sim::Rays& rays);
   void Status(const Voice& voice);
   void Other(const Voice& voice);

@@ -33,6 +33,15 @@ Point PointOf(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
 Point Exchanged(const Point& v) { return {v[1], v[0], -v[2]}; }
 
+std::variant<Place, std::string> PlaceOf(const std::string& frame, const ros::geometry_msgs::Pose& pose,
+                                         const Frames& frames, const std::string& to,
+                                         const std::optional<sim::Origin>& origin) {
+  ros::nav_msgs::Odometry m;
+  m.header.frame_id = frame;
+  m.pose.pose = pose;
+  return PlaceOf(m, frames, to, origin);
+}
+
 std::variant<Place, std::string> PlaceOf(const ros::nav_msgs::Odometry& m, const Frames& frames,
                                          const std::string& to, const std::optional<sim::Origin>& origin) {
   const auto transform = origin ? TransformOf(*origin) : frames.Lookup(to, m.header.frame_id);

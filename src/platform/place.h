@@ -21,6 +21,11 @@ struct Place {
 std::variant<Place, std::string> PlaceOf(const ros::nav_msgs::Odometry& m, const Frames& frames,
                                          const std::string& to, const std::optional<sim::Origin>& origin);
 
+/// Returns the same for a pose that is told in a frame; nothing is known of the velocity, which is zero.
+std::variant<Place, std::string> PlaceOf(const std::string& frame, const ros::geometry_msgs::Pose& pose,
+                                         const Frames& frames, const std::string& to,
+                                         const std::optional<sim::Origin>& origin);
+
 /// Returns the same for what an autopilot says: it counts north, east and down from `origin`, and turns clockwise from north,
 /// while the frame of the fleet has x to the east, y to the north, z up, and turns counter-clockwise from the east (REP-103).
 std::variant<Place, std::string> PlaceOf(const ros::px4_msgs::VehicleOdometry& m, const sim::Origin& origin);

@@ -22,9 +22,6 @@ namespace {
 constexpr size_t kMostRays = 100'000;
 
 bool IsSensor(const koord::Model& model, const Port& port) { return !sim::IsActuator(model, port); }
-bool SaysPlace(const Topic& topic) {
-  return topic.carries == Carries::kOdometry || topic.carries == Carries::kPx4Odometry;
-}
 
 }  // namespace
 
@@ -53,7 +50,7 @@ std::vector<Topic> SensedTopics(const koord::Model& model, const sim::Fleet& fle
     return port.role == PortRole::kScans ||
            (port.role == PortRole::kReached && !TopicOf(model, fleet, robot, port));
   });
-  const bool has_place = std::ranges::any_of(topics, &SaysPlace);
+  const bool has_place = std::ranges::any_of(topics, [](const Topic& t) { return SaysPlace(t.carries); });
   if (needs_place && !has_place) topics.push_back(OdometryOf(fleet, robot));
   return topics;
 }
@@ -96,6 +93,7 @@ base::Result<bool> Senses::Begin(dds::Participant& participant, size_t node) {
                                                           topic.carries == Carries::kPoint ? 3 : 1, clock_);
       continue;
     }
+    if (topic.carries == Carries::kTransform) continue;  // heard below
     const auto subscription =
         Listen(participant, node, topic.name, TypeOf(topic.carries), topic.qos,
                [this, i](std::string_view bytes, const dds::Received&) { Hear(i, bytes); });
@@ -115,8 +113,7 @@ base::Result<bool> Senses::Begin(dds::Participant& participant, size_t node) {
                [this](std::string_view bytes, const dds::Received&) {
                  ros::tf2_msgs::TFMessage message;
                  if (!ros::Parse(bytes, message)) return;
-                 const std::lock_guard lock(mutex_);
-                 frames_.Hear(message);
+                 HearFrames(message);
                });
     if (!subscription.ok()) return subscription.error();
   }
@@ -136,6 +133,25 @@ base::Result<bool> Senses::ListenToPilot(dds::Participant& participant, size_t n
   return true;
 }
 
+void Senses::HearFrames(const ros::tf2_msgs::TFMessage& message) {
+  const Time now = clock_.Now();
+  const std::lock_guard lock(mutex_);
+  frames_.Hear(message);
+  for (Heard& heard : heard_) {
+    if (heard.topic.carries != Carries::kTransform) continue;
+    // Names of frames may have a `/` in front, as in older versions.
+    const bool said = std::ranges::any_of(message.transforms, [&](const auto& t) {
+      return t.child_frame_id == heard.topic.frame || "/" + t.child_frame_id == heard.topic.frame;
+    });
+    if (!said) continue;
+    heard.at = now;
+    heard.wrong.clear();
+    ros::geometry_msgs::Pose here;
+    here.orientation.w = 1;
+    HearPlace(heard, PlaceOf(heard.topic.frame, here, frames_, fleet_.ros.frame, std::nullopt), now);
+  }
+}
+
 void Senses::HearPilot(const Autopilot& pilot) {
   const std::lock_guard lock(mutex_);
   pilot_ = pilot;
@@ -153,14 +169,23 @@ void Senses::Hear(size_t number, std::string_view bytes) {
     if (good) take(heard, message);
   };
   const Topic& topic = heard_[number].topic;
+  const std::optional<sim::Origin>& origin = fleet_.robots[robot_].origin;
   switch (topic.carries) {
     case Carries::kOdometry:
       return with(ros::nav_msgs::Odometry(), [&](Heard& heard, const auto& m) {
-        HearPlace(heard, PlaceOf(m, frames_, fleet_.ros.frame, fleet_.robots[robot_].origin), now);
+        HearPlace(heard, PlaceOf(m, frames_, fleet_.ros.frame, origin), now);
+      });
+    case Carries::kPoseSeen:
+      return with(ros::geometry_msgs::PoseStamped(), [&](Heard& heard, const auto& m) {
+        HearPlace(heard, PlaceOf(m.header.frame_id, m.pose, frames_, fleet_.ros.frame, origin), now);
+      });
+    case Carries::kCovariance:
+      return with(ros::geometry_msgs::PoseWithCovarianceStamped(), [&](Heard& heard, const auto& m) {
+        HearPlace(heard, PlaceOf(m.header.frame_id, m.pose.pose, frames_, fleet_.ros.frame, origin), now);
       });
     case Carries::kPx4Odometry:
       return with(ros::px4_msgs::VehicleOdometry(), [&](Heard& heard, const auto& m) {
-        HearPlace(heard, PlaceOf(m, fleet_.robots[robot_].origin.value_or(sim::Origin())), now);
+        HearPlace(heard, PlaceOf(m, origin.value_or(sim::Origin())), now);
       });
     case Carries::kScan:
       return with(ros::sensor_msgs::LaserScan(),
@@ -205,7 +230,8 @@ double Senses::DistanceOf(float range, const ros::sensor_msgs::LaserScan& m) {
 }
 
 void Senses::HearScan(Heard& heard, const ros::sensor_msgs::LaserScan& m, Time now) {
-  const auto odometry = std::ranges::find_if(heard_, [](const Heard& h) { return SaysPlace(h.topic); });
+  const auto odometry =
+      std::ranges::find_if(heard_, [](const Heard& h) { return SaysPlace(h.topic.carries); });
   if (!place_ || Seconds(now - place_at_) > odometry->topic.max_age) {
     heard.wrong = "it cannot be placed: nobody has said lately where the robot is";
     return;
@@ -318,6 +344,9 @@ void Senses::Read(size_t robot, uint64_t, koord::node::Cell cell, std::span<Word
   switch (from.topic.carries) {
     case Carries::kOdometry:
     case Carries::kPx4Odometry:
+    case Carries::kPoseSeen:
+    case Carries::kCovariance:
+    case Carries::kTransform:
       if (!place_) return;
       if (port->role == PortRole::kPosition) sim::WritePoint(place_->position, words.data());
       if (port->role == PortRole::kVelocity) sim::WritePoint(place_->velocity, words.data());

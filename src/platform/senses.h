@@ -78,6 +78,7 @@ class Senses final : public koord::node::Sensors {
   void Hear(size_t heard, std::string_view bytes);
   void HearPlace(Heard& heard, const std::variant<Place, std::string>& place, Time now);
   void HearPilot(const Autopilot& pilot);
+  void HearFrames(const ros::tf2_msgs::TFMessage& message);
   std::string Wrong(const Heard& heard, Time now) const;
   static double DistanceOf(float range, const ros::sensor_msgs::LaserScan& m);
   void HearScan(Heard& heard, const ros::sensor_msgs::LaserScan& m, Time now);

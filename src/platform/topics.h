@@ -28,6 +28,9 @@ enum class Carries : uint8_t {
   kTwistStamped,     ///< geometry_msgs/TwistStamped: the same
   kAckermann,        ///< ackermann_msgs/AckermannDriveStamped: the same
   kGoalStatus,       ///< action_msgs/GoalStatusArray: what became of goals
+  kPoseSeen,         ///< geometry_msgs/PoseStamped: where the robot is
+  kCovariance,       ///< geometry_msgs/PoseWithCovarianceStamped: the same
+  kTransform,        ///< tf2_msgs/TFMessage: where a frame of the robot is
   kJointState,       ///< sensor_msgs/JointState: where a joint is
   kJointTrajectory,  ///< trajectory_msgs/JointTrajectory: where a joint is to be
   kPx4Odometry,      ///< px4_msgs/VehicleOdometry: as kOdometry
@@ -39,6 +42,12 @@ constexpr bool Drives(Carries carries) {
   return carries == Carries::kTwist || carries == Carries::kTwistStamped || carries == Carries::kAckermann;
 }
 
+/// Reports whether a topic says where the robot is.
+constexpr bool SaysPlace(Carries carries) {
+  return carries == Carries::kOdometry || carries == Carries::kPx4Odometry || carries == Carries::kPoseSeen ||
+         carries == Carries::kCovariance || carries == Carries::kTransform;
+}
+
 /// Says on which topic a port is.
 struct Topic {
   std::string port;  ///< its name in the program, without the module
@@ -46,16 +55,19 @@ struct Topic {
   Carries carries = Carries::kNumber;
   double max_age = 0;            ///< of a sensor, in seconds
   ros::Qos qos;                  ///< of the robot's node
+  std::string frame;             ///< of kTransform
   std::string joint;             ///< of kJointState and kJointTrajectory
   double within = 0;             ///< of kJointTrajectory, in seconds
   uint8_t system = 1;            ///< of kPx4Setpoint: the number of the autopilot
   std::string library, options;  ///< of the user's adapter, which stands for the topic; empty: there is none
 };
 
-/// Returns the ports of the program. Reports those that a robot lacks, that the fleet connects with what they are not, or
-/// that the program does not have.
-std::vector<sim::Port> PortsOf(const koord::Model& model, const sim::Fleet& fleet,
-                               diag::Diagnostics& diagnostics);
+/// Returns the name of a port as fleets say it: without the module.
+std::string NameOf(const koord::Model& model, const sim::Port& port);
+/// Returns what the fleet says of a port of this name; nullptr if it says nothing.
+const sim::FleetPort* Said(const sim::Fleet& fleet, const std::string& name);
+/// Returns what the values of a port are to an adapter: kNumber, kBool, kPoint; nothing if it cannot have them.
+std::optional<Carries> AdaptedAs(const koord::Model& model, const sim::Port& port);
 
 /// Returns the topic of a port of a robot: what the fleet says, else the usual one. Nothing for `reached`, unless the fleet
 /// names a topic: the robot finds out by itself whether it is where it was told to go.

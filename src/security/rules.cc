@@ -5,29 +5,18 @@
 
 #include <ctime>
 
+#include "base/xml.h"
+
 namespace rondo::security {
 namespace {
 
 constexpr long kDay = 24L * 3600;
 
-std::string Escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 std::string Topics(const char* what, const std::vector<std::string>& topics) {
   if (topics.empty()) return {};
   std::string text = fmt::format("        <{}>\n          <topics>\n", what);
   for (const std::string& topic : topics)
-    text += fmt::format("            <topic>{}</topic>\n", Escaped(topic));
+    text += fmt::format("            <topic>{}</topic>\n", base::XmlEscaped(topic));
   return text + fmt::format("          </topics>\n        </{}>\n", what);
 }
 
@@ -71,7 +60,7 @@ std::string Governance() {
 }
 
 std::string Permissions(const Enclave& enclave, long now) {
-  const std::string name = Escaped(enclave.name);
+  const std::string name = base::XmlEscaped(enclave.name);
   return fmt::format(
       R"(<?xml version="1.0" encoding="UTF-8"?>
 <dds xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:noNamespaceSchemaLocation="http://www.omg.org/spec/DDS-SECURITY/20170901/omg_shared_ca_permissions.xsd">

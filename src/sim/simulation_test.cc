@@ -155,7 +155,7 @@ TEST(Simulation, ValuesOfTheFleetMustFitTheProgram) {
   fleet.params.clear();
   fleet.initial["n"] = {true, {}};
   EXPECT_EQ(Play("local:\n    int n\nGo:\n    eff:\n        n = 1\n", fleet).messages,
-            std::vector<std::string>{"`n` must be a `int`"});
+            std::vector<std::string>{"`n` must be an `int`"});
 }
 
 TEST(Simulation, ValuesOfTheFleetTakeNoPlaceOfDeclaredOnes) {

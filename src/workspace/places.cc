@@ -5,6 +5,7 @@
 #include <cctype>
 #include <filesystem>
 
+#include "base/file.h"
 #include "solve/cache/proof_cache.h"
 
 namespace rondo::workspace {
@@ -23,6 +24,8 @@ std::string Absolute(const std::string& file) {
 
 std::string DefaultRunFile(const std::string& program, const std::string& property) {
   const std::filesystem::path folder = solve::cache::ProofCache::DefaultFolder().parent_path() / "runs";
+  // Who cannot make it is told when the file is written.
+  static_cast<void>(base::MakeFolders(folder).ok());
   const std::string name = FileName(std::filesystem::path(program).stem().string() + "-" + property);
   return (folder / (name + ".json")).string();
 }

@@ -12,7 +12,7 @@ std::string FileName(std::string text);
 std::string Absolute(const std::string& file);
 
 /// Returns where a run that breaks a property goes unless the user says where: a file in the folder for
-/// cached data.
+/// cached data, which it makes.
 std::string DefaultRunFile(const std::string& program, const std::string& property);
 
 }  // namespace rondo::workspace

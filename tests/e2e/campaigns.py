@@ -11,6 +11,8 @@ import sys
 import tempfile
 import time
 
+from mcap_files import unsealed
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RONDO = str(pathlib.Path(sys.argv[1]).resolve())
 checks = [0, 0]
@@ -105,7 +107,7 @@ with tempfile.TemporaryDirectory() as name:
     check((folder / "again.mcap").read_bytes() == (folder / "found.mcap").read_bytes(), "the same trace")
     done = replay(folder / "found.mcap")
     check(done.returncode == 0 and "bit for bit" in done.stdout and "is not reached" in done.stdout, done.stdout + done.stderr)
-    other = (folder / "found.mcap").read_bytes()
+    other = unsealed((folder / "found.mcap").read_bytes())
     (folder / "other.mcap").write_bytes(other.replace(b"contributed", b"contributee", 1))
     done = replay(folder / "other.mcap")
     check(done.returncode == 1 and "differs: /rondo/log at t = " in done.stdout, done.stdout + done.stderr)

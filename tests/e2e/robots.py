@@ -17,6 +17,8 @@ import sys
 import tempfile
 import time
 
+from mcap_files import unsealed
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RONDO = pathlib.Path(sys.argv[1]).resolve()
 DRIVER = RONDO.parent / "fastdds_driver"
@@ -111,6 +113,11 @@ def simulated_time(folder):
     check("joints: status", status == 0, status, report)
     done = rondo("launch", LINEFORM, "--fleet", TURTLES, "--speed", 2)
     check("speed: not without a simulated clock", done.returncode == 1 and "use_sim_time" in done.stderr, done.stderr)
+    for what, psn in (("a pose", '{ pose = "amcl_pose", with_covariance = true }'), ("transforms", '{ tf = "base_link", max_age = 0.5 }'), ("a bare pose", '{ pose = "pose" }')):
+        path = fleet(folder, "posed.toml", ("[ros]", "[ros]\nuse_sim_time = true"), ('psn = { ros2 = "odom", max_age = 0.5 }', f"psn = {psn}"))
+        status, report = launch(LINEFORM, "--fleet", path, "--duration", 6, "--speed", 3, "--logs", folder / "posed")
+        clean(what, report, 20)
+        check(f"{what}: status, and they move", status == 0 and moved(folder / "posed" / "bot1.mcap"), status, report)
     path = fleet(folder, "paused.toml", ("[ros]", "[ros]\nuse_sim_time = true"))
     process = subprocess.Popen([str(RONDO), "launch", LINEFORM, "--fleet", str(path), "--duration", "8", "--json"], stdout=subprocess.PIPE, text=True)
     time.sleep(4)
@@ -263,18 +270,6 @@ def logs(folder):
     cut.write_bytes(bytes_[: len(bytes_) // 2])
     done = rondo("replay", names[0], names[1], cut, names[3])
     check("logs: one is cut off", done.returncode == 3 and "cut off" in done.stdout, done.stdout, done.stderr)
-
-
-def unsealed(file):
-    """An MCAP file without checksums: who changes it means to."""
-    out, at = bytearray(file), 8
-    while at + 9 <= len(file) - 8:
-        kind, size = file[at], int.from_bytes(file[at + 1:at + 9], "little")
-        crc = {0x06: at + 9 + 24, 0x0F: at + 9, 0x02: at + 9 + 16}.get(kind)
-        if crc is not None:
-            out[crc:crc + 4] = bytes(4)
-        at += 9 + size
-    return bytes(out)
 
 
 def altered(folder):

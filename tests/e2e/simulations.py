@@ -15,6 +15,7 @@ import tempfile
 import time
 from random import Random
 
+from mcap_files import unsealed
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
@@ -89,7 +90,7 @@ def read(trace, name):
         summary = reader.get_summary()
         counted = {}
         last = None
-        topics = [c.topic for c in summary.channels.values() if summary.schemas[c.schema_id].encoding == "ros2msg"]
+        topics = [c.topic for c in summary.channels.values() if c.schema_id and summary.schemas[c.schema_id].encoding == "ros2msg"]
         for schema, _, _, decoded in reader.iter_decoded_messages(topics=topics):
             counted[schema.name] = counted.get(schema.name, 0) + 1
             if schema.name == "geometry_msgs/msg/PoseStamped":
@@ -121,6 +122,9 @@ def damaged(rondo, folder):
     changed = bytearray(good)
     changed[at + 20] ^= 1
     bad.write_bytes(changed)
+    done = run(rondo, "replay", bad)
+    check(done.returncode == 1 and "checksum" in done.stderr + done.stdout, f"a flipped bit: {done.stdout}{done.stderr}")
+    bad.write_bytes(unsealed(bytes(changed)))
     done = run(rondo, "replay", bad)
     check(done.returncode == 1 and "differs: /" in done.stdout, f"a changed position: {done.stdout}")
 

@@ -244,6 +244,8 @@ reached = { nav2 = "navigate_to_pose/_action/status" }
 elbow = { joint_states = "joint_states", joint = "elbow_joint", reliable = true, transient_local = true, depth = 3 }
 bend = { joint_trajectory = "arm/joint_trajectory", joint = "elbow_joint", within = 0.5 }
 charge = { adapter = "./libbattery.so", with = "/dev/ttyUSB0" }
+heading = { tf = "base_link" }
+position = { pose = "amcl_pose", with_covariance = true }
 [[robot]]
 name = "a"
 model = "car"
@@ -272,6 +274,9 @@ origin = [1, 2, 3]
   EXPECT_EQ(elbow.depth, 3U);
   EXPECT_EQ(ros.ports.at("bend").within, 0.5);
   EXPECT_EQ(ros.ports.at("charge").via, PortVia::kAdapter);
+  EXPECT_EQ(ros.ports.at("heading").via, PortVia::kTransform);
+  EXPECT_EQ(ros.ports.at("position").via, PortVia::kPose);
+  EXPECT_TRUE(ros.ports.at("position").with_covariance);
   EXPECT_EQ(ros.ports.at("charge").options, "/dev/ttyUSB0");
   // Each begins where it starts.
   EXPECT_EQ(reading.fleet.robots[1].origin->position, (Point{2, 2, 0}));

@@ -29,6 +29,8 @@ const std::vector<Way>& Ways() {
       {"nav2", PortVia::kNav2, {}},
       {"cmd_vel", PortVia::kTwist, {"stamped", "reliable", "depth"}},
       {"ackermann", PortVia::kAckermann, {"reliable", "depth"}},
+      {"pose", PortVia::kPose, {"with_covariance", "max_age", "reliable", "transient_local", "depth"}},
+      {"tf", PortVia::kTransform, {"max_age"}},
       {"joint_states", PortVia::kJointStates, {"joint", "max_age", "reliable", "transient_local", "depth"}},
       {"joint_trajectory", PortVia::kJointTrajectory, {"joint", "within", "reliable", "depth"}},
       {"px4", PortVia::kPx4, {"max_age", "system"}},
@@ -44,6 +46,7 @@ void ReadPort(Tables& tables, const std::string& name, const Way& way, const tom
   p.via = way.via;
   p.topic = Text(tables, table, way.word, "\"odom\"");
   p.stamped = tables.Flag(table, "stamped", false);
+  p.with_covariance = tables.Flag(table, "with_covariance", false);
   p.max_age = tables.Number(table, "max_age", 0, 1e-3, 1e4);
   p.joint = Text(tables, table, "joint", "\"elbow\"");
   p.within = tables.Number(table, "within", 0, 1e-3, 1e4);

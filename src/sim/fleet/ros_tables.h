@@ -16,6 +16,8 @@ enum class PortVia : uint8_t {
   kNav2,             ///< `nav2`: where to go, as Nav2 takes it; `reached`: the status of its action
   kTwist,            ///< `cmd_vel`: velocities; the controller of the model is in the robot's node
   kAckermann,        ///< `ackermann`: a speed and an angle of steering; the same
+  kPose,             ///< `pose`: where the robot is, by a pose
+  kTransform,        ///< `tf`: where the robot is, by transforms
   kJointStates,      ///< `joint_states`: the position of one joint
   kJointTrajectory,  ///< `joint_trajectory`: where one joint is to be; ports with one topic are sent together
   kPx4,              ///< `px4`: topics of an autopilot, and in front of them this
@@ -25,9 +27,10 @@ enum class PortVia : uint8_t {
 /// Says on which topic a port of the program is.
 struct FleetPort {
   PortVia via = PortVia::kTopic;
-  bool stamped = false;  ///< of kTwist: TwistStamped
+  bool stamped = false;          ///< of kTwist: TwistStamped
+  bool with_covariance = false;  ///< of kPose: PoseWithCovarianceStamped
   std::string
-      topic;  ///< in the namespace of the robot, unless it begins with `/`; of kAdapter the file of the library
+      topic;  ///< in the namespace of the robot, unless it begins with `/`; of kAdapter the file of the library; of kTransform a frame
   std::string joint;  ///< of kJointStates and kJointTrajectory
   double within = 0;  ///< of kJointTrajectory: seconds until it is to be there; 0: one round
   int system =
