@@ -249,10 +249,10 @@ void Orders::Send(const Line& line) {
     }
     // At once, whatever the clock of the driver says: a stamp of zero.
     (void)lines_[line.sender].publisher->Write(MessageOf(goals, HeaderOf(fleet_.ros.frame, 0))).ok();
-  } else if (goes) {
-    (void)line.publisher->Write(MessageOf(topic.carries, line.said, Header())).ok();
   } else {
-    (void)line.publisher->Write(MessageOf(topic, line.said_numbers, Header())).ok();
+    const std::string bytes =
+        goes ? MessageOf(topic.carries, line.said, Header()) : MessageOf(topic, line.said_numbers, Header());
+    (void)line.publisher->Write(bytes).ok();
   }
 }
 
