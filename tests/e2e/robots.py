@@ -202,9 +202,9 @@ def stranger(seconds):
     """Repeats what it hears on the wire, and sends datagrams that are too long or none; says how many."""
     try:
         ear = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(0x0800))
-    except PermissionError:
+        ear.bind(("lo", 0))
+    except OSError:
         return "skipped: nobody may listen to the wire here"
-    ear.bind(("lo", 0))
     ear.settimeout(0.2)
     mouth = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     first, count, heard = 7400 + 250 * DOMAIN, 0, []
