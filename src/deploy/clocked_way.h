@@ -18,8 +18,7 @@ class ClockedWay final : public transport::Transport {
   // Nobody knows when a simulated clock will say what: it is looked at every few milliseconds.
   bool Receive(runtime::rounds::Time until, runtime::codec::Bytes& datagram) override {
     constexpr runtime::rounds::Time kLook = 2'000'000;
-    const runtime::rounds::Time now = transport::BootTime();
-    return way_.Receive(clock_.simulated() ? now + kLook : until, datagram);
+    return way_.Receive(clock_.simulated() ? transport::BootTime() + kLook : until, datagram);
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "base/file.h"
 #include "deploy/clocked_way.h"
 #include "deploy/echo.h"
 #include "deploy/round_thread.h"
@@ -133,14 +134,13 @@ class RobotProcess {
     // Greater than in any life before, as long as the clock on the wall goes forward between lives.
     settings_.incarnation = static_cast<uint64_t>(platform::WallTime());
     if (!options_.folder.empty()) {
-      std::error_code failed;
-      std::filesystem::create_directories(options_.folder, failed);
+      if (const auto made = base::MakeFolders(options_.folder); !made.ok())
+        return base::Error{
+            fmt::format("cannot use the folder `{}`: {}", options_.folder, made.error().message)};
       disk_ = std::make_unique<runtime::durable::FileDisk>(
           std::filesystem::path(options_.folder) /
           fmt::format("{}-{:016x}.record", name_, settings_.session));
       record_ = disk_->Read();
-      if (failed)
-        return base::Error{fmt::format("cannot use the folder `{}`: {}", options_.folder, failed.message())};
     }
     if (options_.log.empty()) return true;
     auto replica = Make(nullptr);

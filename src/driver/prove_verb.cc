@@ -94,8 +94,10 @@ ExitStatus Run(const Options& options) {
     return status;
   };
   if (!loaded) return finish_early(ExitStatus::kRejected);
-  if (const std::string why = Folder(options.smt_out); !why.empty())
+  const auto refuse = [&](const std::string& why) {
     return driver::Refuse("prove", options.file, options.json, session.sources, session.diagnostics, why);
+  };
+  if (const std::string why = Folder(options.smt_out); !why.empty()) return refuse(why);
   const koord::Model& model = loaded->model;
   if (model.invariants.empty()) {
     session.diagnostics
@@ -112,9 +114,6 @@ ExitStatus Run(const Options& options) {
                                                         : solve::cache::ProofCache::DefaultFolder());
   const solve::cache::CachingSolver caching(z3, cache);
   const solve::smtlib::SmtLibSolver other(options.cross_check);
-  const auto refuse = [&](const std::string& why) {
-    return driver::Refuse("prove", options.file, options.json, session.sources, session.diagnostics, why);
-  };
   if (!options.cross_check.empty()) {
     if (const auto tried = other.Try(); !tried.ok()) return refuse(tried.error().message);
   }

@@ -28,6 +28,15 @@ std::string Thrown(const Call& call) {
   }
 }
 
+// Asks the thread of what is shared to end, and waits for it, but not for ever.
+template <class Shared>
+void End(Shared& shared) {
+  std::unique_lock lock(shared.mutex);
+  shared.ending = true;
+  shared.changed.notify_all();
+  shared.changed.wait_for(lock, kPatience, [&] { return shared.ended; });
+}
+
 // Makes what a library has under this name.
 template <class T>
 base::Result<std::unique_ptr<T>> Make(const std::string& library, const char* maker, const char* macro,
@@ -113,12 +122,7 @@ AdaptedSensor::AdaptedSensor(std::unique_ptr<adapter::Sensor> sensor, size_t par
   std::thread([shared = shared_] { shared->Run(); }).detach();
 }
 
-AdaptedSensor::~AdaptedSensor() {
-  std::unique_lock lock(shared_->mutex);
-  shared_->ending = true;
-  shared_->changed.notify_all();
-  shared_->changed.wait_for(lock, kPatience, [&] { return shared_->ended; });
-}
+AdaptedSensor::~AdaptedSensor() { End(*shared_); }
 
 AdaptedSensor::Said AdaptedSensor::said() const {
   const std::lock_guard lock(shared_->mutex);
@@ -161,12 +165,7 @@ AdaptedActuator::AdaptedActuator(std::unique_ptr<adapter::Actuator> actuator)
   std::thread([shared = shared_] { shared->Run(); }).detach();
 }
 
-AdaptedActuator::~AdaptedActuator() {
-  std::unique_lock lock(shared_->mutex);
-  shared_->ending = true;
-  shared_->changed.notify_all();
-  shared_->changed.wait_for(lock, kPatience, [&] { return shared_->ended; });
-}
+AdaptedActuator::~AdaptedActuator() { End(*shared_); }
 
 void AdaptedActuator::Write(std::vector<double> numbers) {
   const std::lock_guard lock(shared_->mutex);

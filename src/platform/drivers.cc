@@ -67,11 +67,11 @@ base::Result<bool> Drivers::Begin(dds::Participant& participant, size_t r) {
   if (odometry.carries == Carries::kOdometry) {
     if (auto made = Speak(participant, node, r, nullptr, odometry); !made.ok()) return made;
   }
-  std::string setpoints;
+  std::optional<Topic> setpoints;
   for (const Port& port : ports_) {
     const auto topic = TopicOf(model_, fleet_, r, port);
     if (!topic || !topic->library.empty()) continue;
-    if (topic->carries == Carries::kPx4Setpoint) setpoints = topic->name;
+    if (topic->carries == Carries::kPx4Setpoint) setpoints = topic;
     // The autopilot speaks for itself; where frames are is told of all.
     if (topic->carries == Carries::kPx4Setpoint || topic->carries == Carries::kPx4Odometry ||
         topic->carries == Carries::kTransform)
@@ -81,14 +81,9 @@ base::Result<bool> Drivers::Begin(dds::Participant& participant, size_t r) {
     if (!made.ok()) return made.error();
   }
   if (odometry.carries != Carries::kPx4Odometry) return true;
-  const auto flown = std::ranges::find_if(
-      fleet_.ros.ports, [](const auto& port) { return port.second.via == sim::PortVia::kPx4; });
-  if (setpoints.empty())
-    setpoints =
-        ros::FullName(fleet_.robots[r].node_namespace, flown->second.topic + "/in/trajectory_setpoint");
-  const auto system = static_cast<uint8_t>(flown->second.system > 0 ? flown->second.system : r + 1);
-  autopilots_[r] = std::make_unique<SimulatedAutopilot>(*bodies_[r], *fleet_.robots[r].origin, system);
-  return autopilots_[r]->Begin(participant, node, odometry.name, setpoints);
+  autopilots_[r] =
+      std::make_unique<SimulatedAutopilot>(*bodies_[r], *fleet_.robots[r].origin, setpoints->system);
+  return autopilots_[r]->Begin(participant, node, odometry.name, setpoints->name);
 }
 
 base::Result<bool> Drivers::Speak(dds::Participant& participant, size_t node, size_t robot, const Port* port,

@@ -57,7 +57,7 @@ class Orders {
     std::unique_ptr<AdaptedActuator> adapted;
     std::vector<sim::Point> path;  // of kPose one point
     Numbers numbers{};             // of others
-    bool told = false;             // something, by a round
+    bool told = false;             // something; of an autopilot, by a round
     bool due = false;              // to be sent
     bool unheard = false;          // sent, and nobody was there
     bool always = false;           // whatever time it is

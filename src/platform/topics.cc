@@ -125,6 +125,18 @@ std::string Below(const std::string& topic, Carries carries) {
   return topic;
 }
 
+// The number of an autopilot.
+uint8_t SystemOf(const sim::FleetPort& port, size_t robot) {
+  return static_cast<uint8_t>(port.system > 0 ? port.system : robot + 1);
+}
+
+// The first port that an autopilot has; nullptr: there is none.
+const sim::FleetPort* Flown(const sim::Fleet& fleet) {
+  const auto flown = std::ranges::find_if(fleet.ros.ports,
+                                          [](const auto& port) { return port.second.via == PortVia::kPx4; });
+  return flown == fleet.ros.ports.end() ? nullptr : &flown->second;
+}
+
 // What drivers usually ask for.
 ros::Qos QosOf(Carries carries, bool actuator) {
   if (carries == Carries::kGoalStatus) return ros::kLatched;
@@ -155,7 +167,7 @@ std::optional<Topic> TopicOf(const koord::Model& model, const sim::Fleet& fleet,
   topic.qos.depth = said->depth.value_or(topic.qos.depth);
   topic.joint = said->joint;
   topic.within = said->within > 0 ? said->within : fleet.delta;
-  topic.system = static_cast<uint8_t>(said->system > 0 ? said->system : robot + 1);
+  topic.system = SystemOf(*said, robot);
   topic.options = said->options;
   if (said->via == PortVia::kAdapter) {
     topic.name = topic.library = said->topic;
@@ -169,16 +181,26 @@ std::optional<Topic> TopicOf(const koord::Model& model, const sim::Fleet& fleet,
 }
 
 Topic OdometryOf(const sim::Fleet& fleet, size_t robot) {
-  const auto flown = std::ranges::find_if(fleet.ros.ports,
-                                          [](const auto& port) { return port.second.via == PortVia::kPx4; });
+  const sim::FleetPort* flown = Flown(fleet);
   Topic topic;
   topic.port = "where it is";
-  topic.carries = flown == fleet.ros.ports.end() ? Carries::kOdometry : Carries::kPx4Odometry;
+  topic.carries = flown == nullptr ? Carries::kOdometry : Carries::kPx4Odometry;
   topic.max_age = 5 * fleet.delta;
   topic.qos = QosOf(topic.carries, false);
-  topic.name = ros::FullName(fleet.robots[robot].node_namespace,
-                             flown == fleet.ros.ports.end() ? UsualName(topic.carries, "")
-                                                            : Below(flown->second.topic, topic.carries));
+  topic.name =
+      ros::FullName(fleet.robots[robot].node_namespace,
+                    flown == nullptr ? UsualName(topic.carries, "") : Below(flown->topic, topic.carries));
+  return topic;
+}
+
+Topic SetpointsOf(const sim::Fleet& fleet, size_t robot) {
+  const sim::FleetPort& flown = *Flown(fleet);
+  Topic topic;
+  topic.port = "where to fly";
+  topic.carries = Carries::kPx4Setpoint;
+  topic.qos = QosOf(topic.carries, true);
+  topic.system = SystemOf(flown, robot);
+  topic.name = ros::FullName(fleet.robots[robot].node_namespace, Below(flown.topic, topic.carries));
   return topic;
 }
 

@@ -75,6 +75,8 @@ std::optional<Topic> TopicOf(const koord::Model& model, const sim::Fleet& fleet,
                              const sim::Port& port);
 /// Returns the usual topic on which a robot says where it is, whether a port asks for it or not.
 Topic OdometryOf(const sim::Fleet& fleet, size_t robot);
+/// Returns the topic on which its autopilot hears where to fly, whether a port says it or not, if the fleet has autopilots.
+Topic SetpointsOf(const sim::Fleet& fleet, size_t robot);
 
 /// Name the topics that an autopilot has beside those of its odometry, and of its setpoints.
 inline constexpr const char *kControlMode = "vehicle_control_mode", *kOffboardMode = "offboard_control_mode",

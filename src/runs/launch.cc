@@ -15,6 +15,7 @@
 #include <mutex>
 #include <thread>
 
+#include "base/file.h"
 #include "deploy/keystore.h"
 #include "platform/topics.h"
 
@@ -110,10 +111,8 @@ class Launcher {
       : program_(program), options_(options), session_(session) {}
 
   base::Result<LaunchReport> Run() {
-    std::error_code failed;
-    fs::create_directories(options_.logs, failed);
-    if (failed)
-      return base::Error{fmt::format("cannot use the folder `{}`: {}", options_.logs, failed.message())};
+    if (const auto made = base::MakeFolders(options_.logs); !made.ok())
+      return base::Error{fmt::format("cannot use the folder `{}`: {}", options_.logs, made.error().message)};
     // All are on this machine, whatever the fleet says.
     ::setenv("ROS_LOCALHOST_ONLY", "1", 1);
     ::unsetenv("ROS_AUTOMATIC_DISCOVERY_RANGE");

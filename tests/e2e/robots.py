@@ -345,8 +345,7 @@ def doctor(folder):
           done.stdout)
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=60)
-    (folder / "solo.koord").write_text(SOLO)
-    (folder / "solo.toml").write_text(SOLO_FLEET)
+    solo(folder)
     sleeper = subprocess.Popen([str(SLEEPER), str(DOMAIN), "solo", "6"])
     done = rondo("doctor", folder / "solo", "--seconds", 1.5)
     check("doctor: a node that is not active", "/solo/localizer is a lifecycle node, and not active" in done.stdout, done.stdout)
@@ -377,15 +376,25 @@ position = [0, 0, 0]
 """
 
 
-def vendors(folder):
+def solo(folder):
     (folder / "solo.koord").write_text(SOLO)
     (folder / "solo.toml").write_text(SOLO_FLEET)
+
+
+def driven(folder, driver, name, says):
+    """One robot, whose driver another vendor's library has: both directions."""
+    solo(folder)
+    process = subprocess.Popen([str(RONDO), "run", str(folder / "solo"), "--robot", "solo", "--duration", "4", "--json"], stdout=subprocess.PIPE)
+    heard = subprocess.run([str(driver), str(DOMAIN), "solo", "9"], capture_output=True, text=True, timeout=60)
+    report = json.loads(process.communicate(timeout=60)[0])
+    check(f"{name} drives a robot", report["status"] == 0 and report["rounds"] >= 30 and report["blind"] == 0, report)
+    check(f"{name} is told where to go", re.fullmatch(says, heard.stdout), heard.stdout, heard.stderr)
+
+
+def vendors(folder):
+    solo(folder)
     if DRIVER.exists():
-        process = subprocess.Popen([str(RONDO), "run", str(folder / "solo"), "--robot", "solo", "--duration", "4", "--json"], stdout=subprocess.PIPE)
-        driver = subprocess.run([str(DRIVER), str(DOMAIN), "solo", "9"], capture_output=True, text=True, timeout=60)
-        report = json.loads(process.communicate(timeout=60)[0])
-        check("Fast DDS drives a robot", report["status"] == 0 and report["rounds"] >= 30 and report["blind"] == 0, report)
-        check("Fast DDS is told where to go", re.fullmatch(r"goals \d+ at 3.000 2.500 in map; nodes /solo/rondo\n", driver.stdout), driver.stdout)
+        driven(folder, DRIVER, "Fast DDS", r"goals \d+ at 3.000 2.500 in map; nodes /solo/rondo\n")
     else:
         print("note: Fast DDS is not there: `./dev setup` installs it")
     process = subprocess.Popen([str(RONDO), "launch", str(folder / "solo"), "--duration", "8", "--json"], stdout=subprocess.PIPE)
@@ -399,19 +408,12 @@ def vendors(folder):
 def rust(folder):
     if not RUST.exists():
         return print("note: the driver in Rust is not there: `./dev nightly` makes it")
-    (folder / "solo.koord").write_text(SOLO)
-    (folder / "solo.toml").write_text(SOLO_FLEET)
-    process = subprocess.Popen([str(RONDO), "run", str(folder / "solo"), "--robot", "solo", "--duration", "4", "--json"], stdout=subprocess.PIPE)
-    driver = subprocess.run([str(RUST), str(DOMAIN), "solo", "9"], capture_output=True, text=True, timeout=60)
-    report = json.loads(process.communicate(timeout=60)[0])
-    check("a driver in Rust drives a robot", report["status"] == 0 and report["rounds"] >= 30 and report["blind"] == 0, report)
-    return check("a driver in Rust is told where to go", re.fullmatch(r"goals [1-9]\d* at 3.000 2.500 in map\n", driver.stdout), driver.stdout, driver.stderr)
+    return driven(folder, RUST, "a driver in Rust", r"goals [1-9]\d* at 3.000 2.500 in map\n")
 
 
 def wire(folder):
     """What Wireshark's dissector sees on the wire, and what `rosbags` reads of a trace and a log."""
-    (folder / "solo.koord").write_text(SOLO)
-    (folder / "solo.toml").write_text(SOLO_FLEET)
+    solo(folder)
     capture, trace = folder / "wire.pcapng", folder / "wire.mcap"
     first = 7400 + 250 * DOMAIN
     shark = None
