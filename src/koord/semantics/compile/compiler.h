@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "koord/check/model.h"
+#include "koord/semantics/compile/domains.h"
 #include "koord/semantics/machine/code.h"
 #include "koord/semantics/machine/layout.h"
 
@@ -97,24 +98,9 @@ class Compiler {
   uint32_t FieldOffset(TypeId record, uint32_t field) const;
 
   // compile_quantifiers.cc
-  struct Bound {
-    uint32_t binding;
-    DomainKind kind;
-    ExprId list;
-  };
   void Quantifier(ExprId id, const lang::Expr& e);
   void Fold(ExprId id, const lang::Expr& e);
   void Loop(const std::vector<Bound>& all, size_t i, ExprId body, bool forall, std::vector<size_t>& decided);
-  struct Limit {
-    ExprId value;
-    int64_t plus;
-  };
-  /// Limits of an int variable that follow from the condition of the quantifier.
-  void Limits(uint32_t binding, bool upper, const std::vector<ExprId>& conditions,
-              const std::vector<uint32_t>& unbound, std::vector<uint32_t>& seen,
-              std::vector<Limit>& limits) const;
-  bool CannotFail(ExprId id) const;
-  bool Mentions(ExprId e, const std::vector<uint32_t>& bindings) const;
   void Range(const std::vector<Limit>& limits, Op pick, uint32_t slot);
 
   // compile_calls.cc
