@@ -1,14 +1,15 @@
 # `cmake --install`: the program, models, examples and documents, and a package that finds them.
 #
 #   find_package(rondo REQUIRED)     # rondo::rondo is the program; rondo::adapter has the header of adapters of one's own;
-#                                    # rondo_MODELS and rondo_EXAMPLES are folders
+#                                    # rondo::program those of programs that `rondo build` makes; rondo_MODELS and rondo_EXAMPLES are folders
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(data ${CMAKE_INSTALL_DATADIR}/rondo)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/rondo)
 install(TARGETS rondo EXPORT rondo-targets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(TARGETS rondo_adapter_header EXPORT rondo-targets)
+install(TARGETS rondo_adapter_header rondo_program_headers EXPORT rondo-targets)
 install(FILES src/adapter/adapter.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rondo)
+install(DIRECTORY src/program DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rondo FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY models examples DESTINATION ${data})
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.svg")

@@ -70,6 +70,9 @@ class RobotProcess {
     planner_ = std::make_unique<PlannerThread>(fleet_.clearance / 2);
     replica_ = Make(planner_.get());
     if (replica_ == nullptr) return Reported();
+    if (options_.attach) {
+      if (const auto attached = options_.attach(replica_->team()); !attached.ok()) return attached.error();
+    }
     agreement_ = Agreement(options_, *replica_);
     auto participant = dds::Participant::Open(options_.network);
     if (!participant.ok()) return participant.error();

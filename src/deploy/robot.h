@@ -8,7 +8,7 @@
 #include "base/stop.h"
 #include "dds/network.h"
 #include "deploy/robot_log.h"
-#include "koord/check/model.h"
+#include "koord/semantics/team.h"
 #include "sim/fleet/fleet.h"
 
 /// Runs programs on robots.
@@ -26,6 +26,8 @@ struct RobotOptions {
   std::string program_name, program, spec, fleet;  ///< texts
   nlohmann::json files;                            ///< what the fleet refers to
   base::StopToken stop;
+  /// Lets something else than the machine run the events of the team; empty: nothing. @error why not.
+  std::function<base::Result<bool>(koord::semantics::Team& team)> attach;
   /// Receives what a person should know, now and then: on one line.
   std::function<void(const std::string&)> tell;
 };

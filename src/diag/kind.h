@@ -136,6 +136,7 @@ enum class Kind : uint8_t {
   kKoordDisagreement,
   // Koord: running.
   kKoordNotExecutable,
+  kKoordNotBuildable,
   kKoordNotChecked,
   kKoordNoInitialState,
   kKoordViolated,

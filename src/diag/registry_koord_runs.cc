@@ -11,6 +11,13 @@ constexpr KindInfo kTable[] = {
      "`Room.temperature in grid(60, 80, 2)`, `f(x) = x + 1`. In simulations, the fleet file can give them as well.",
      "param int limit\nlocal:\n    int n = 0\nStep:\n    pre: n < limit\n    eff:\n        n = n + 1\n",
      "explore"},
+    {Kind::kKoordNotBuildable, "koord-not-buildable", Severity::kError,
+     "something that C++ without growing memory cannot hold",
+     "A program that `rondo build` makes takes no memory while it runs, so each list, and each value of an external type, needs to\n"
+     "say how many items it has at most: `--capacity 'List<int>=16'`, or `--capacity 64` for all that are not named. What has\n"
+     "no room is the fault \"longer than its capacity\" then, and the event is skipped.",
+     "local:\n    List<int> seen\nStep:\n    pre: len(seen) < 3\n    eff:\n        seen.append(pid)\n",
+     "build --robots 2 --print"},
     {Kind::kKoordNotChecked, "koord-not-checked", Severity::kWarning,
      "a formula that runs are not checked against",
      "The formula speaks of all values of a type, and there are too many of them to try. Proofs can deal with it; a run\n"

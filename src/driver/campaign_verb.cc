@@ -12,6 +12,7 @@
 #include "driver/command.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
+#include "koord/native/native_program.h"
 #include "runs/campaign_teams.h"
 #include "runs/campaign_trace.h"
 #include "runs/simulation_files.h"
@@ -36,6 +37,7 @@ struct Options {
   uint64_t rounds = 30;
   uint64_t seed = 1;
   std::vector<size_t> robots;
+  std::string core;
   std::string scenarios;
   std::string save;
   std::string logs;
@@ -86,10 +88,12 @@ campaign::CampaignOptions ReadOptions(const Options& options, workspace::Session
   return search;
 }
 
-campaign::CampaignReport Search(runs::CampaignTeams& teams, campaign::CampaignOptions& search,
+// With a library, it runs the events of the robots; the judge has the machine.
+campaign::CampaignReport Search(runs::CampaignTeams& teams, const std::optional<koord::native::Library>& core,
+                                const diag::SourceSet& sources, campaign::CampaignOptions& search,
                                 double& seconds) {
   const campaign::Fleet::MakeTeam make = teams.Maker();
-  campaign::Fleet robots(make);
+  campaign::Fleet robots(core ? teams.NativeMaker(*core, sources) : make);
   ProgressLine line;
   const InterruptScope interrupt(search.stop);
   const auto begin = std::chrono::steady_clock::now();
@@ -168,18 +172,34 @@ ExitStatus Run(const Options& options) {
   }
   const runs::CampaignTexts texts = TextsOf(files, session, surroundings.contents());
   campaign::CampaignOptions search = ReadOptions(options, session);
+  const auto refuse = [&](const std::string& why) {
+    return Refuse("campaign", options.file, options.json, session.sources, session.diagnostics, why);
+  };
   campaign::CampaignReport report;
   double seconds = 0;
   Saved saved;
   ExitStatus status = ExitStatus::kRejected;
   if (loaded && !session.diagnostics.has_errors()) {
     runs::CampaignTeams teams(loaded->model, fleet);
+    std::optional<koord::native::Library> core;
+    if (!options.core.empty()) {
+      auto library = koord::native::Library::Load(options.core);
+      if (!library.ok()) return refuse(library.error().message);
+      core = library.value();
+      if (options.robots.empty()) search.least = search.most = core->robots();
+      const auto team = teams.Make(search.least, session.diagnostics);
+      const auto attached = team == nullptr ? base::Result<bool>(true) : core->Attach(*team, session.sources);
+      if (!attached.ok()) return refuse(attached.error().message);
+      if (search.least != search.most ||
+          std::ranges::any_of(search.scenarios, [&](const auto& s) { return s.robots != core->robots(); }))
+        return refuse(fmt::format("`{}` was made for {}: no other team can be tried", options.core,
+                                  base::Counted(core->robots(), "robot")));
+    }
     const size_t first = search.scenarios.empty() ? search.least : search.scenarios[0].robots;
     if (teams.Make(first, session.diagnostics) != nullptr && !session.diagnostics.has_errors()) {
-      if (const std::string why = Folder(options.logs); !why.empty())
-        return Refuse("campaign", options.file, options.json, session.sources, session.diagnostics, why);
+      if (const std::string why = Folder(options.logs); !why.empty()) return refuse(why);
       if (!options.logs.empty()) search.each = LogsTo(options, texts);
-      report = Search(teams, search, seconds);
+      report = Search(teams, core, session.sources, search, seconds);
       status = report.failure   ? ExitStatus::kRejected
                : report.stopped ? ExitStatus::kUndecided
                                 : ExitStatus::kEstablished;
@@ -242,6 +262,9 @@ void AddCampaignVerb(CLI::App& app, ExitStatus& status) {
       "--save", options->save,
       "where to write the scenario that fails, and, with `.mcap`, what its robots logged; default: NAME.scenario.toml");
   verb.Option("--logs", options->logs, "a folder for what the robots log in each run (MCAP), good or not");
+  verb.Option(
+      "--core", options->core,
+      "a library that `rondo build` made of the program runs the events of the robots, instead of the machine");
   verb.Flag("--json", options->json, "the result as JSON on standard output");
   verb.Footer(
       "examples:\n"

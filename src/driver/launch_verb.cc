@@ -21,6 +21,7 @@ using verdict::ExitStatus;
 namespace {
 
 struct Options {
+  std::vector<std::string> cores;
   std::string file;
   std::string fleet;
   std::string spec;
@@ -176,6 +177,14 @@ ExitStatus Run(const Options& options) {
     return Fail(options, session,
                 "`--speed` needs a fleet whose time is simulated: `use_sim_time = true` in its `[ros]`");
   launch.logs = options.logs;
+  for (const std::string& core : options.cores) {
+    const size_t equals = core.find('=');
+    const std::string robot = equals == std::string::npos ? "" : core.substr(0, equals);
+    if (!robot.empty() && std::ranges::find(program->fleet.robots, robot, &sim::FleetRobot::name) ==
+                              program->fleet.robots.end())
+      return Fail(options, session, fmt::format("`--core {}`: the fleet has no robot `{}`", core, robot));
+    launch.cores[robot] = equals == std::string::npos ? core : core.substr(equals + 1);
+  }
   std::optional<trace::Writer> writer;
   if (!options.trace.empty()) {
     auto opened = trace::Writer::Open(options.trace);
@@ -250,6 +259,11 @@ void AddLaunchVerb(CLI::App& app, ExitStatus& status) {
       .Required();
   verb.Option("--fleet", options->fleet, "the fleet, if it is not beside the program");
   verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
+  verb.Option(
+          "--core", options->cores,
+          "a library that `rondo build` made of the program runs the events of the robots, or with `NAME=LIBRARY` of one of them, "
+          "instead of the machine")
+      .OneEach();
   verb.Option("--duration", options->duration, "seconds from the first round on; default: as the fleet says")
       .Between(1e-3, 1e7);
   verb.Option("--speed", options->speed,

@@ -24,10 +24,10 @@ namespace {
 
 /// In the order of the help.
 constexpr void (*kVerbs[])(CLI::App&, ExitStatus&) = {
-    AddCheckVerb,   AddFormatVerb, AddProveVerb,      AddExploreVerb, AddSimulateVerb, AddRunVerb,
-    AddLaunchVerb,  AddDoctorVerb, AddKeysVerb,       AddReplayVerb,  AddCampaignVerb, AddPlotVerb,
-    AddReachVerb,   AddInferVerb,  AddGraphVerb,      AddProjectVerb, AddSolveVerb,    AddCertifyVerb,
-    AddExplainVerb, AddAstVerb,    AddCompletionVerb,
+    AddCheckVerb,   AddFormatVerb,  AddProveVerb,  AddExploreVerb,    AddSimulateVerb, AddRunVerb,
+    AddLaunchVerb,  AddBuildVerb,   AddDoctorVerb, AddKeysVerb,       AddReplayVerb,   AddCampaignVerb,
+    AddPlotVerb,    AddReachVerb,   AddInferVerb,  AddGraphVerb,      AddProjectVerb,  AddSolveVerb,
+    AddCertifyVerb, AddExplainVerb, AddAstVerb,    AddCompletionVerb,
 };
 
 // `rondo 0.2.0 (commit 0123456789)`

@@ -8,6 +8,7 @@
 #include "driver/command.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
+#include "koord/native/native_program.h"
 #include "lang/suggest.h"
 #include "runs/robot_files.h"
 
@@ -25,6 +26,7 @@ struct Options {
   std::string spec;
   std::string log;
   std::string folder;
+  std::string core;
   std::optional<uint64_t> seed;
   uint64_t session = 0;
   double duration = 0;
@@ -92,6 +94,13 @@ ExitStatus Run(const Options& options) {
   run.duration = options.duration;
   run.log = options.log;
   run.folder = options.folder;
+  if (!options.core.empty()) {
+    const auto library = koord::native::Library::Load(options.core);
+    if (!library.ok()) return Fail(options, session, library.error().message);
+    run.attach = [library = library.value(), &session](koord::semantics::Team& team) {
+      return library.Attach(team, session.sources);
+    };
+  }
   if (!options.json)
     run.tell = [&](const std::string& text) { PrintError(fmt::format("{}: {}\n", options.robot, text)); };
   base::Result<deploy::RobotReport> ran = base::Error{};
@@ -149,6 +158,8 @@ void AddRunVerb(CLI::App& app, ExitStatus& status) {
               "write what the robot does into this file (MCAP); `rondo replay` judges the logs of a fleet");
   verb.Option("--state", options->folder,
               "a folder for what has to survive a crash; default: nothing survives");
+  verb.Option("--core", options->core,
+              "a library that `rondo build` made of the program runs its events, instead of the machine");
   verb.Option("--session", options->session,
               "a number that all robots have in common; another one for each run of a fleet with `--state`");
   verb.Option("--seed", options->seed, "of everything that is random; default: the fleet's, or 1");

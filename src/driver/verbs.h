@@ -18,6 +18,7 @@ void AddGraphVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddProjectVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddProveVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddExploreVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddBuildVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddSimulateVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddCampaignVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddRunVerb(CLI::App& app, verdict::ExitStatus& status);

@@ -21,4 +21,13 @@ sim::campaign::Fleet::MakeTeam CampaignTeams::Maker() {
   return [this](size_t robots) { return Make(robots, again_); };
 }
 
+sim::campaign::Fleet::MakeTeam CampaignTeams::NativeMaker(const koord::native::Library& library,
+                                                          const diag::SourceSet& sources) {
+  return [this, &library, &sources](size_t robots) {
+    auto team = Make(robots, again_);
+    if (team != nullptr) (void)library.Attach(*team, sources).ok();
+    return team;
+  };
+}
+
 }  // namespace rondo::runs

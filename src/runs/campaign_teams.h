@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "koord/native/native_program.h"
 #include "sim/campaign/any_functions.h"
 #include "sim/campaign/world.h"
 #include "sim/fleet/fleet.h"
@@ -18,8 +19,11 @@ class CampaignTeams {
 
   /// Returns a team of this size; nullptr, with the reasons reported, if there is none.
   std::unique_ptr<koord::semantics::Team> Make(size_t robots, diag::Diagnostics& diagnostics);
-  /// Makes teams as `Make` does, of sizes for which that has worked.
+  /// Makes teams as `Make` does, of sizes for which that has worked. `Native`: their events are run by a library, to which such a
+  /// team could be attached.
   sim::campaign::Fleet::MakeTeam Maker();
+  sim::campaign::Fleet::MakeTeam NativeMaker(const koord::native::Library& library,
+                                             const diag::SourceSet& sources);
 
  private:
   const koord::Model& model_;

@@ -161,6 +161,9 @@ class Launcher {
                                          fmt::to_string(program_.texts.seed),
                                          "--session",
                                          fmt::to_string(session)};
+      const auto own = options_.cores.find(robot.name), all = options_.cores.find("");
+      if (const auto core = own != options_.cores.end() ? own : all; core != options_.cores.end())
+        arguments.insert(arguments.end(), {"--core", core->second});
       if (!program_.files.spec.empty()) arguments.insert(arguments.end(), {"--spec", program_.files.spec});
       if (program_.fleet.rounds.disks)
         arguments.insert(arguments.end(), {"--state", (folder / "state").string()});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,8 +18,10 @@ namespace rondo::runs {
 struct LaunchOptions {
   std::string executable;  ///< the program that runs one robot: `EXECUTABLE run FILE --robot NAME ...`
   std::string logs;        ///< the folder of the logs
-  double speed = 1;        ///< seconds of the world in one; not 1 only if the fleet has `use_sim_time`
-  double duration = 0;     ///< seconds of the world from when the first round begins; 0: as the fleet says
+  std::map<std::string, std::string> cores =
+      {};               ///< by robot: what runs its events (`rondo run --core`); of all others: ""
+  double speed = 1;     ///< seconds of the world in one; not 1 only if the fleet has `use_sim_time`
+  double duration = 0;  ///< seconds of the world from when the first round begins; 0: as the fleet says
   trace::Writer* trace = nullptr;  ///< of the bodies
   base::StopToken stop;
   /// Receives, now and then, what the robots say of themselves, and how many seconds the run is old.

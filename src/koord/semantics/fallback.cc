@@ -3,6 +3,7 @@
 namespace rondo::koord::semantics {
 
 bool FallBack(Team& team, std::span<Word> state, size_t robot) {
+  if (team.native() != nullptr) return team.native()->FallBack(state, robot);
   Machine& machine = team.machine();
   machine.SetMemory(state.data());
   bool all = true;

@@ -106,6 +106,11 @@ void ProgramTransition::Find(size_t r) {
   Machine& machine = team_.machine();
   const Layout& layout = team_.layout();
   if (memory_[layout.block(r) + layout.stopped()] != 0) return;
+  if (team_.native() != nullptr) {
+    team_.native()->Find(memory_, r, effects_[r]);
+    counts_[r] = effects_[r].size();
+    return;
+  }
   for (uint32_t e = 0; e < team_.events().size(); ++e) {
     const EventCode& event = team_.events()[e];
     if (event.guard != 0) {
@@ -146,6 +151,11 @@ void ProgramTransition::PrepareInit(std::span<const Word> state) {
   team_.machine().SetMemory(memory_.data());
   for (size_t r = 0; r < team_.robots(); ++r) {
     counts_[r] = 0;
+    if (team_.native() != nullptr) {
+      team_.native()->FindInit(memory_, r, effects_[r]);
+      counts_[r] = effects_[r].size();
+      continue;
+    }
     Each([&] {
       Effect& effect = Next(r);
       RunInits(r, effect);

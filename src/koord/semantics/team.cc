@@ -154,7 +154,8 @@ bool Team::Compile(const TeamOptions& options, diag::Diagnostics& diagnostics) {
     const Variable& variable = model_.variables[v];
     if (variable.kind == VariableKind::kParam) continue;
     has_sensors_ = has_sensors_ || (variable.kind == VariableKind::kSensor && variable.function < 0);
-    if (variable.initial.valid()) declared_.push_back({v, compiler.Initial(v, variable.initial)});
+    if (variable.initial.valid())
+      declared_.push_back({v, compiler.Initial(v, variable.initial), variable.initial});
     refuse();
     const auto choice = model_.exploration.choices.find(v);
     if (choice == model_.exploration.choices.end()) continue;
@@ -247,7 +248,7 @@ std::optional<FormulaCode> Team::CompileFormula(Compiler& compiler, std::string 
     unchecked_.push_back({std::move(name), bad->span, bad->reason});
     return std::nullopt;
   }
-  return FormulaCode{std::move(name), span, entry, per_robot};
+  return FormulaCode{std::move(name), span, entry, per_robot, false, e};
 }
 
 void Team::Specification(Compiler& compiler) {
@@ -280,7 +281,7 @@ void Team::Specification(Compiler& compiler) {
           add(port_facts_, name, def->span, def->body);
           break;
         }
-        PromiseCode promise{name, def->span, 0, 0, def->at_end};
+        PromiseCode promise{name, def->span, 0, 0, def->at_end, def->when, def->body};
         if (def->when.valid()) promise.when = compiler.Formula(def->when);
         promise.always = compiler.Formula(def->body);
         if (const auto bad = compiler.TakeUnsupported())
@@ -317,7 +318,7 @@ void Team::Derive(Compiler& compiler, ExprId id) {
     if (variable.kind == VariableKind::kAllread && !cell) continue;
     const uint32_t entry = compiler.Initial(ref.index, e.args[1 - side]);
     if (compiler.TakeUnsupported() || (compiler.used_robot() && !variable.PerRobot())) continue;
-    derived_.push_back({ref.index, entry});
+    derived_.push_back({ref.index, entry, e.args[1 - side]});
     return;
   }
 }
@@ -339,6 +340,7 @@ bool Team::Holds(const FormulaCode& formula, size_t* robot, bool* defined) {
 }
 
 std::string Team::ShowLogged(size_t type, std::span<const Word> value) const {
+  if (type == kPlainText) return heap_.Text(value[0]);
   if (model_.types.Is(logged_[type], TypeKind::kString)) return heap_.Text(value[0]);
   return Show(model_.types, heap_, logged_[type], value);
 }

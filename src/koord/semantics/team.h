@@ -4,12 +4,14 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "diag/diagnostic.h"
 #include "koord/semantics/compile/compiler.h"
 #include "koord/semantics/machine/machine.h"
+#include "koord/semantics/native.h"
 
 /// Turns a checked Koord program into code for a fixed number of robots, which simulations, explorations and
 /// replays run.
@@ -30,6 +32,7 @@ struct FormulaCode {
   uint32_t entry;
   bool per_robot;
   bool at_rounds = false;  ///< an invariant that has to hold between rounds only
+  ExprId body{};           ///< what it says
 };
 /// Holds a controller assumption (the paper's (P, Q)): if `when` holds at the end of the program transition,
 /// `always` holds at every moment until the next round.
@@ -39,6 +42,7 @@ struct PromiseCode {
   uint32_t when;  ///< the entry of P; 0 if Q holds in any case
   uint32_t always;
   bool at_end = false;  ///< Q holds when the round is over
+  ExprId p{}, q{};      ///< P, invalid if there is none, and Q
 };
 /// Holds the code of a bounded response.
 struct ResponseCode {
@@ -51,6 +55,7 @@ struct ResponseCode {
 struct InitialCode {
   size_t variable;
   uint32_t entry;
+  ExprId value{};
 };
 /// Names a part of the specification that has no executable form, so that runs are not checked against it,
 /// and says why.
@@ -84,10 +89,18 @@ class Team {
                                     diag::Diagnostics& diagnostics, Heap heap = {});
 
   const Model& model() const { return model_; }
+  const Code& code() const { return code_; }
   const Layout& layout() const { return *layout_; }
+  /// Returns the lengths of arrays, by the texts that types have for them.
+  const Lengths& lengths() const { return lengths_; }
+  /// Returns the words of the parameters, in the order of the layout.
+  std::span<const Word> params() const { return params_; }
   Heap& heap() { return heap_; }
   const Heap& heap() const { return heap_; }
   Machine& machine() { return *machine_; }
+  /// Sets who runs events, `init` and fallbacks in place of the machine, which answers formulas still; nullptr: nobody.
+  void SetNative(std::unique_ptr<Native> native) { native_ = std::move(native); }
+  Native* native() const { return native_.get(); }
   size_t robots() const { return layout_->robots(); }
 
   const std::vector<EventCode>& events() const { return events_; }
@@ -161,6 +174,7 @@ class Team {
   Code code_;
   std::unique_ptr<Layout> layout_;
   std::unique_ptr<Machine> machine_;
+  std::unique_ptr<Native> native_;
   std::vector<Word> params_;
   Lengths lengths_;
   std::vector<EventCode> events_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -220,6 +221,15 @@ struct Program {
   std::vector<Item> items;
   std::vector<lang::Comment> comments;
   std::vector<diag::Span> item_spans;  ///< from the first to the last token of each item
+
+  /// Returns the files that it was read from: that of the program first.
+  std::vector<diag::FileId> Files() const {
+    std::vector<diag::FileId> files;
+    for (const diag::Span span : item_spans) {
+      if (span.file.valid() && std::ranges::find(files, span.file) == files.end()) files.push_back(span.file);
+    }
+    return files;
+  }
 };
 
 }  // namespace rondo::koord

@@ -31,7 +31,8 @@ class Reader : Tables {
     const toml::table root = Root();
     if (diagnostics_.errors() != before) return std::move(fleet_);
     Known(root,
-          {"run", "world", "lidar", "map", "planner", "params", "initial", "rounds", "robot", "ros", "ports"},
+          {"run", "world", "lidar", "map", "planner", "params", "initial", "rounds", "robot", "ros", "ports",
+           "capacities"},
           "a fleet file");
     if (const auto* run = Table(root, "run")) Run(*run);
     if (const auto* world = Table(root, "world")) ReadWorld(*world);
@@ -49,6 +50,11 @@ class Reader : Tables {
     }
     if (const auto* params = Table(root, "params")) Values(*params, fleet_.params);
     if (const auto* initial = Table(root, "initial")) Values(*initial, fleet_.initial);
+    if (const auto* capacities = Table(root, "capacities")) {
+      for (const auto& [type, _] : *capacities)
+        fleet_.capacities[std::string(type.str())] =
+            Whole(*capacities, std::string(type.str()).c_str(), 64, 1, 1e6);
+    }
     fleet_.ros = ReadRos(*this, root);
     Robots(root);
     ReadRounds(Table(root, "rounds"));

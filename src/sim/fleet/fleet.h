@@ -121,6 +121,7 @@ struct Fleet {
   std::vector<FleetRobot> robots;
   std::map<std::string, FleetValue> params;
   std::map<std::string, FleetValue> initial;
+  std::map<std::string, size_t> capacities;  ///< of lists in programs as C++: by type, and of all `others`
 };
 
 /// Returns how the robots of a fleet run their rounds; `self`, `incarnation`, `agreement` and `session` are to be set.

@@ -27,6 +27,7 @@ class Machine {
   const Word* memory() const { return state_.memory; }
   /// Sets who computes external functions and receives what is logged; nullptr: nobody.
   void SetHost(Host* host) { state_.host = host; }
+  Host* host() const { return state_.host; }
   /// Chooses for `any`: returns a number below `possibilities`. Without a chooser, `any` takes the first.
   using Chooser = std::function<uint64_t(uint64_t possibilities)>;
   void SetChooser(Chooser chooser) { state_.chooser = std::move(chooser); }

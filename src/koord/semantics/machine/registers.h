@@ -28,6 +28,7 @@ struct Unit {
 };
 
 /// Is a value that a run wrote to a stream, of a log type (`Team::ShowLogged`).
+inline constexpr size_t kPlainText = SIZE_MAX;  ///< stands for a log type: what was written is text already
 struct Said {
   size_t type;
   std::vector<Word> value;

@@ -1,0 +1,474 @@
+#include "codegen/koord/generate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "codegen/koord/emitter.h"
+#include "codegen/koord/names.h"
+
+namespace rondo::codegen {
+
+using koord::Variable;
+using koord::VariableKind;
+using koord::semantics::EventCode;
+using koord::semantics::FormulaCode;
+using koord::semantics::Layout;
+
+namespace {
+
+/// Puts the parts of a program together.
+class Assembly {
+ public:
+  Assembly(const koord::semantics::Team& team, const diag::SourceSet& sources, const GenerateOptions& options,
+           diag::Diagnostics& diagnostics)
+      : team_(team),
+        model_(team.model()),
+        name_(CppStem(options.name)),
+        digest_(options.digest),
+        types_(team, options.capacities, diagnostics),
+        emitter_(team, sources, types_, diagnostics) {}
+
+  GeneratedProgram Make() {
+    Variables();
+    const std::string events = Bodies();
+    const std::string formulas = Formulas();
+    std::vector<std::string> methods;
+    for (const Emitter::External& external : emitter_.external_functions()) {
+      std::string parameters;
+      for (size_t i = 0; i < external.parameters.size(); ++i)
+        parameters += ParameterText(external.parameters[i], external.parameter_names[i]) + ", ";
+      methods.push_back(fmt::format("Answer {}(int64_t robot, {}{}& result) noexcept", external.name,
+                                    parameters, external.result));
+      calls_ += fmt::format("  virtual {} = 0;\n", methods.back());
+    }
+    return {name_, Header(), Source(events, formulas), Core(), methods};
+  }
+
+ private:
+  struct Member {
+    std::string type, name;
+  };
+
+  // The structures that hold the state, and its cells.
+  void Variables();
+  std::string Struct(const std::string& name, VariableKind kind, const std::string& more = {});
+  std::string Cells();
+  std::string Cell(size_t variable, const std::string& now, size_t depth);
+  std::string Visit(const std::string& now, size_t depth);
+
+  std::string Bodies();
+  std::string Table(const std::string& name, const std::string& type, const std::vector<std::string>& rows);
+  std::string Formulas();
+  std::string Formula(const std::string& prefix, size_t number, const std::string& name, koord::ExprId e);
+  std::string Header();
+  std::string Source(const std::string& events, const std::string& formulas);
+  std::string Core() const;
+  static std::string Signature(std::string text, const std::string& body, bool to);
+
+  const koord::semantics::Team& team_;
+  const koord::Model& model_;
+  std::string name_;
+  uint64_t digest_;
+  Types types_;
+  Emitter emitter_;
+  std::string params_, shared_, local_, in_, out_, changes_, cells_, each_cell_, each_shared_, each_own_;
+  std::string events_, event_table_, tables_, table_names_, calls_;
+};
+
+std::string Assembly::Struct(const std::string& name, VariableKind kind, const std::string& more) {
+  std::string members, module;
+  for (size_t i = 0; i < model_.variables.size(); ++i) {
+    const Variable& v = model_.variables[i];
+    if (!team_.layout()[i].exists) continue;
+    const bool shared = kind == VariableKind::kAllwrite && v.Shared();
+    if (!shared && v.kind != kind) continue;
+    std::string type = types_.Of(v.type, v.span);
+    if (v.kind == VariableKind::kAllread) type = fmt::format("std::array<{}, kRobots>", type);
+    if (v.module.empty()) {
+      members += fmt::format("  {} {}{{}};\n", type, CppName(v.name));
+      continue;
+    }
+    if (module != v.module) {
+      if (!module.empty()) members += fmt::format("  }} {};\n", CppName(module));
+      members += fmt::format("  struct {}Ports {{\n", v.module);
+      module = v.module;
+    }
+    members += fmt::format("    {} {}{{}};\n", type, CppName(v.name.substr(v.module.size() + 1)));
+  }
+  if (!module.empty()) members += fmt::format("  }} {};\n", CppName(module));
+  return fmt::format("struct {} {{\n{}{}}};\n\n", name, members, more);
+}
+
+std::string Assembly::Cell(size_t variable, const std::string& now, size_t depth) {
+  const std::string name = emitter_.NameOf(variable);
+  if (depth == 0) return fmt::format("    cell(cell::{0}, changes.{0}, {1});\n", name, now);
+  return fmt::format(
+      "    for (size_t k = 0; k < Step::Count<{2}>({1}); ++k)\n"
+      "      cell(cell::{0} + k, Step::Nested<{2}>(changes.{0}, k), Step::Nested<{2}>({1}, k));\n",
+      name, now, depth);
+}
+
+std::string Assembly::Visit(const std::string& now, size_t depth) {
+  if (depth == 0) return fmt::format("    visit({});\n", now);
+  return fmt::format(
+      "    for (size_t k = 0; k < Step::Count<{1}>({0}); ++k) visit(Step::Nested<{1}>({0}, k));\n", now,
+      depth);
+}
+
+void Assembly::Variables() {
+  size_t cells = 0;
+  for (size_t i = 0; i < model_.variables.size(); ++i) {
+    const Variable& v = model_.variables[i];
+    const Layout::Place& place = team_.layout()[i];
+    if (!place.exists) continue;
+    const std::string type = types_.Of(v.type, v.span);
+    if (v.kind == VariableKind::kParam) {
+      const auto words = team_.params().subspan(place.at, place.width);
+      params_ += fmt::format("inline const {} {} = {};\n", type, CppName(v.name),
+                             types_.Literal(v.type, words, v.span));
+      continue;
+    }
+    const std::string part = v.kind == VariableKind::kLocal      ? "local."
+                             : v.kind == VariableKind::kActuator ? "out."
+                             : v.kind == VariableKind::kSensor   ? "in."
+                                                                 : "shared.";
+    const std::string now = part + emitter_.PathOf(i) + (v.kind == VariableKind::kAllread ? "[robot]" : "");
+    (v.PerRobot() ? each_own_ : each_shared_) += Visit(now, place.dimensions.size());
+    if (v.kind == VariableKind::kSensor) continue;
+    const std::string name = emitter_.NameOf(i);
+    const size_t depth = place.dimensions.size();
+    changes_ += fmt::format("  {} {}{{}};\n", type, name);
+    cells_ += fmt::format("  {} = {},\n", name, cells);
+    cells += std::max<uint32_t>(1, place.length);
+    each_cell_ += Cell(i, now, depth);
+  }
+  changes_ += "  bool stopped = false;\n";
+  cells_ += fmt::format("  stopped = {},\n  kCount = {},\n", cells, cells + 1);
+  each_cell_ += "    cell(cell::stopped, changes.stopped, local.stopped);\n";
+  shared_ = Struct("Shared", VariableKind::kAllwrite);
+  local_ = Struct("Local", VariableKind::kLocal, "  bool stopped = false;\n");
+  in_ = Struct("In", VariableKind::kSensor);
+  out_ = Struct("Out", VariableKind::kActuator);
+}
+
+// A parameter that is not used has no name.
+std::string Assembly::Signature(std::string text, const std::string& body, bool to) {
+  const auto used = [&](const std::string& what) { return body.find(what) != std::string::npos; };
+  if (!used("r.") && !used("(r,"))
+    text += "Step&";
+  else
+    text += "Step& r";
+  const bool view = used("v.") || used(" v,") || used(", v)");
+  text += view ? ", const View<Program>& v" : ", const View<Program>&";
+  if (to) text += used("to.") ? ", To& to" : ", To&";
+  return text + ")";
+}
+
+std::string Assembly::Bodies() {
+  std::string text, names;
+  std::vector<std::string> rows;
+  const auto body = [&](const std::string& function, const std::vector<koord::Stmt>& statements) {
+    const std::string lines = emitter_.Body(statements);
+    text += fmt::format("{} {{\n{}}}\n\n", Signature(fmt::format("void {}(", function), lines, true), lines);
+  };
+  for (const EventCode& event : team_.events()) {
+    const std::string name = CppName(event.def->name);
+    names += (names.empty() ? "" : ", ") + name;
+    if (event.def->pre.valid()) {
+      emitter_.At(event.def->span);
+      const std::string guard = emitter_.Formula(event.def->pre);
+      text +=
+          fmt::format("{} {{\n{}}}\n\n", Signature(fmt::format("bool {}_guard(", name), guard, false), guard);
+    }
+    body(name, event.def->body);
+    rows.push_back(fmt::format("{{{}, {}, {}, events::{}}}", CppString(event.def->name), event.urgent,
+                               event.def->pre.valid() ? fmt::format("events::{}_guard", name) : "nullptr",
+                               name));
+  }
+  events_ = names;
+  tables_ += Table("Program::kEvents", "EventCode<Program>", rows);
+  rows.clear();
+  for (size_t i = 0; i < model_.inits.size(); ++i) {
+    body(fmt::format("init_{}", i), model_.inits[i]->body);
+    rows.push_back(fmt::format("events::init_{}", i));
+  }
+  tables_ += Table("Program::kInits", "Program::InitBody", rows);
+  rows.clear();
+  for (const koord::FallbackDef* def : model_.fallbacks) {
+    const std::string name = fmt::format("fallback_{}", CppName(def->module));
+    body(name, def->code.body);
+    rows.push_back(fmt::format("{{{}, false, nullptr, events::{}}}", CppString(def->module), name));
+  }
+  tables_ += Table("Program::kFallbacks", "EventCode<Program>", rows);
+  return text;
+}
+
+std::string Assembly::Table(const std::string& name, const std::string& type,
+                            const std::vector<std::string>& rows) {
+  std::string text = fmt::format("const std::array<{}, {}> {}{{", type, rows.size(), name);
+  if (!rows.empty()) text += "{\n";
+  for (const std::string& row : rows) text += fmt::format("    {},\n", row);
+  table_names_ += fmt::format("{} {}\n", rows.size(), name);
+  return text + (rows.empty() ? "};\n" : "}};\n");
+}
+
+std::string Assembly::Formula(const std::string& prefix, size_t number, const std::string& name,
+                              koord::ExprId e) {
+  const std::string body = emitter_.Formula(e);
+  const auto used = [&](const std::string& what) { return body.find(what) != std::string::npos; };
+  const bool step = body.find("r.") != std::string::npos || body.find("(r,") != std::string::npos;
+  return fmt::format(
+      "// {}\nbool {}_{}(Step&{}, const View<Program>&{}, const View<Program>&{}) {{\n{}}}\n\n",
+      diag::Escaped(name), prefix, number, step ? " r" : "", used("v.") || used(" v,") ? " v" : "",
+      used("old.") || used(" old,") ? " old" : "", body);
+}
+
+std::string Assembly::Formulas() {
+  std::string text;
+  const auto list = [&](const std::string& table, const std::string& prefix,
+                        const std::vector<FormulaCode>& formulas) {
+    std::vector<std::string> rows;
+    for (size_t i = 0; i < formulas.size(); ++i) {
+      text += Formula(prefix, i, formulas[i].name, formulas[i].body);
+      rows.push_back(fmt::format("{{{}, {}, formulas::{}_{}}}", CppString(formulas[i].name),
+                                 formulas[i].per_robot, prefix, i));
+    }
+    tables_ += Table("Program::" + table, "FormulaCode<Program>", rows);
+  };
+  list("kInvariants", "invariant", team_.invariants());
+  list("kInitially", "initially", team_.initially());
+  list("kFacts", "fact", team_.facts());
+  list("kPortFacts", "port_fact", team_.port_facts());
+  std::vector<std::string> rows;
+  const auto& promises = team_.promises();
+  for (size_t i = 0; i < promises.size(); ++i) {
+    if (promises[i].p.valid()) text += Formula("when", i, promises[i].name, promises[i].p);
+    text += Formula("always", i, promises[i].name, promises[i].q);
+    const auto row = [&](const std::string& formula) {
+      return fmt::format("{{{}, true, formulas::{}_{}}}", CppString(promises[i].name), formula, i);
+    };
+    rows.push_back(fmt::format("{{{}, {}, {}}}",
+                               promises[i].p.valid() ? row("when") : "{\"\", true, nullptr}", row("always"),
+                               promises[i].at_end));
+  }
+  tables_ += Table("Program::kPromises", "Program::Promise", rows);
+  return text;
+}
+
+std::string Assembly::Header() {
+  std::string declared;
+  for (size_t at = 0; at < table_names_.size();) {
+    const size_t end = table_names_.find('\n', at);
+    const size_t space = table_names_.find(' ', at);
+    const std::string count = table_names_.substr(at, space - at);
+    const std::string name = table_names_.substr(space + 10, end - space - 10);  // behind " Program::"
+    const char* type = name == "kInits"                            ? "InitBody"
+                       : name == "kPromises"                       ? "Promise"
+                       : name == "kEvents" || name == "kFallbacks" ? "EventCode<Program>"
+                                                                   : "FormulaCode<Program>";
+    declared += fmt::format("  static const std::array<{}, {}> {};\n", type, count, name);
+    at = end + 1;
+  }
+  return fmt::format(
+      R"(// Made by `rondo build`. Changes are lost when it is made again.
+#pragma once
+
+#include <rondo/program/effects.h>
+
+namespace {name} {{
+
+using namespace rondo::program;
+
+inline constexpr int64_t kRobots = {robots};
+constexpr bool IsRobot(int64_t robot) {{ return 0 <= robot && robot < kRobots; }}
+constexpr int64_t operator""_i(unsigned long long number) {{ return static_cast<int64_t>(number); }}
+using Str = Text<{text}>;
+
+{types}namespace param {{
+
+{params}
+}}  // namespace param
+
+// What all robots read; the items of arrays of {robots} are written by the robot with that number.
+{shared}// What one robot has for itself, what its sensors read, and what its actuators are told.
+{local}{in}{out}enum class Event : uint8_t {{ {events} }};
+
+// What an event may write, by variable; of arrays with one item for each robot, the robot's own.
+struct Changes {{
+{changes}}};
+namespace cell {{
+enum : size_t {{
+{cells}}};
+}}  // namespace cell
+using Effect = BasicEffect<Event, cell::kCount, Changes>;
+
+// Answers the questions that the program asks. Each method is called in the round, and has to answer at once: with `kLater`, the
+// robot skips and asks again.
+class Calls {{
+ public:
+  virtual ~Calls() = default;
+{calls}}};
+
+struct To;
+
+// Ties the program together, for the functions of `rondo/program/effects.h`.
+struct Program {{
+  using Shared = {name}::Shared;
+  using Local = {name}::Local;
+  using In = {name}::In;
+  using Out = {name}::Out;
+  using Event = {name}::Event;
+  using Changes = {name}::Changes;
+  using Effect = {name}::Effect;
+  using Calls = {name}::Calls;
+  using To = {name}::To;
+  using InitBody = void (*)(Step&, const View<Program>&, To&);
+  struct Promise {{
+    FormulaCode<Program> when;  ///< no function: always
+    FormulaCode<Program> always;
+    bool at_end;
+  }};
+  static constexpr size_t kRobots = {robots};
+  static constexpr uint64_t kDigest = {digest:#018x};
+  static constexpr size_t kStopped = cell::stopped;
+{tables}
+  // See `rondo/program/effects.h`.
+  static size_t Effects(const Self<Program>& self, Calls& calls, Choice* choice, std::span<Effect> effects) noexcept;
+  static void RunEvent(const Self<Program>& self, Event event, Calls& calls, Choice* choice, Effect& effect) noexcept;
+  static void Init(const Self<Program>& self, Calls& calls, Choice* choice, Effect& effect) noexcept;
+  static void FallBack(const Self<Program>& self, size_t fallback, Calls& calls, Effect& effect) noexcept;
+
+  // Calls `cell(number, value in changes, value in the state)` for each variable and item that robot `robot` may write.
+  template <typename ChangesType, typename Cell>
+  static void EachCell([[maybe_unused]] int64_t robot, ChangesType& changes, [[maybe_unused]] Shared& shared, Local& local,
+                       [[maybe_unused]] Out& out, const Cell& cell) {{
+{each}  }}
+  // Calls `visit(value)` for each variable, and each item of arrays, that all robots may write, and that one robot has of its own.
+  template <typename Visit>
+  static void EachShared([[maybe_unused]] Shared& shared, const Visit& visit) {{
+    (void)visit;
+{each_shared}  }}
+  template <typename Visit>
+  static void EachOwn([[maybe_unused]] size_t robot, [[maybe_unused]] Shared& shared, Local& local, [[maybe_unused]] In& in,
+                      [[maybe_unused]] Out& out, const Visit& visit) {{
+{each_own}    visit(local.stopped);
+  }}
+}};
+
+}}  // namespace {name}
+)",
+      fmt::arg("name", name_), fmt::arg("digest", digest_), fmt::arg("robots", team_.robots()),
+      fmt::arg("text", types_.TextCapacity()), fmt::arg("types", types_.definitions()),
+      fmt::arg("params", params_), fmt::arg("shared", shared_), fmt::arg("local", local_),
+      fmt::arg("in", in_), fmt::arg("out", out_), fmt::arg("events", events_), fmt::arg("changes", changes_),
+      fmt::arg("cells", cells_), fmt::arg("calls", calls_), fmt::arg("tables", declared),
+      fmt::arg("each", each_cell_), fmt::arg("each_shared", each_shared_), fmt::arg("each_own", each_own_));
+}
+
+std::string Assembly::Source(const std::string& events, const std::string& formulas) {
+  std::string functions, accessors;
+  for (const FunctionText& f : emitter_.functions())
+    functions += fmt::format("[[maybe_unused]] {} {}\n\n", f.signature, f.body);
+  const auto section = [](const std::string& comment, const std::string& name, const std::string& text) {
+    return text.empty()
+               ? ""
+               : fmt::format(
+                     "{0}namespace {1} {{\nnamespace {{\n\n{2}}}  // namespace\n}}  // namespace {1}\n\n",
+                     comment, name, text);
+  };
+  for (const auto& [_, text] : emitter_.accessors()) accessors += "  " + text + "\n";
+  return fmt::format(
+      R"(// Made by `rondo build`. Changes are lost when it is made again.
+#include "{name}.h"
+
+namespace {name} {{
+
+// Gives events what they may write.
+struct To : Writing<Program> {{
+{accessors}}};
+
+{functions}// The events: `r` takes faults, `v` is what the robot sees, `to` is where it writes. Comments
+// give lines of the program, and braces places in it: the line, the column, and how many bytes.
+namespace events {{
+namespace {{
+
+{events}}}  // namespace
+}}  // namespace events
+
+{formulas}{tables}
+size_t Program::Effects(const Self<Program>& self, Calls& calls, Choice* choice, std::span<Effect> effects) noexcept {{
+  return rondo::program::Effects<Program>(self, calls, choice, effects);
+}}
+void Program::RunEvent(const Self<Program>& self, Event event, Calls& calls, Choice* choice, Effect& effect) noexcept {{
+  rondo::program::RunEvent<Program>(self, static_cast<size_t>(event), calls, choice, effect);
+}}
+void Program::Init(const Self<Program>& self, Calls& calls, Choice* choice, Effect& effect) noexcept {{
+  rondo::program::Init<Program>(self, calls, choice, effect);
+}}
+void Program::FallBack(const Self<Program>& self, size_t fallback, Calls& calls, Effect& effect) noexcept {{
+  rondo::program::FallBack<Program>(self, fallback, calls, effect);
+}}
+
+}}  // namespace {name}
+)",
+      fmt::arg("name", name_), fmt::arg("accessors", accessors),
+      fmt::arg(
+          "functions",
+          section(
+              "// The functions of the program, which have no value where `r` has a fault. `at`: where they are called.\n",
+              "functions", functions)),
+      fmt::arg("events", events),
+      fmt::arg(
+          "formulas",
+          section(
+              "// What the specification says of the state `v`; `old`: the one at the end of the program transition.\n",
+              "formulas", formulas)),
+      fmt::arg("tables", tables_));
+}
+
+// What loads the program without knowing its types (rondo/program/core.h).
+std::string Assembly::Core() const {
+  std::string asking, names;
+  size_t number = 0;
+  for (const auto& external : emitter_.external_functions()) {
+    std::string parameters, arguments;
+    for (size_t i = 0; i < external.parameters.size(); ++i) {
+      parameters += ParameterText(external.parameters[i], fmt::format("a{}", i)) + ", ";
+      arguments += fmt::format(", a{}", i);
+    }
+    asking += fmt::format(
+        "  Answer {}(int64_t robot, {}{}& result) noexcept override {{ return AskCore(host, {}, robot, result{}); }}\n",
+        external.name, parameters, external.result, number++, arguments);
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", CppString(external.of));
+  }
+  return fmt::format(
+      R"(// Made by `rondo build`. Changes are lost when it is made again.
+#include <rondo/program/core.h>
+
+#include "{0}.h"
+
+namespace {0} {{
+
+struct Asking final : Calls {{
+  explicit Asking(CoreHost& h) : host(h) {{}}
+  CoreHost& host;
+  static std::vector<std::string> Questions() {{ return {{{2}}}; }}
+{1}}};
+
+std::unique_ptr<Core> MakeCore() {{ return std::make_unique<CoreOf<Program, Asking>>(); }}
+
+}}  // namespace {0}
+)",
+      name_, asking, names);
+}
+
+}  // namespace
+
+GeneratedProgram Generate(const koord::semantics::Team& team, const diag::SourceSet& sources,
+                          const GenerateOptions& options, diag::Diagnostics& diagnostics) {
+  Assembly assembly(team, sources, options, diagnostics);
+  return assembly.Make();
+}
+
+}  // namespace rondo::codegen

@@ -1,0 +1,73 @@
+#include "codegen/koord/names.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace rondo::codegen {
+
+namespace {
+
+// The words of C++20, then those that the text that is made uses itself.
+constexpr auto kWords = std::to_array<std::string_view>(
+    {"alignas", "alignof", "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break", "case",
+     "catch", "char", "char16_t", "char32_t", "char8_t", "class", "co_await", "co_return", "co_yield",
+     "compl", "concept", "const", "const_cast", "consteval", "constexpr", "constinit", "continue", "decltype",
+     "default", "delete", "do", "double", "dynamic_cast", "else", "enum", "explicit", "export", "extern",
+     "false", "float", "for", "friend", "goto", "if", "inline", "int", "long", "mutable", "namespace", "new",
+     "noexcept", "not", "not_eq", "nullptr", "operator", "or", "or_eq", "private", "protected", "public",
+     "register", "reinterpret_cast", "requires", "return", "short", "signed", "sizeof", "static",
+     "static_assert", "static_cast", "struct", "switch", "template", "this", "thread_local", "throw", "true",
+     "try", "typedef", "typeid", "typename", "union", "unsigned", "using", "virtual", "void", "volatile",
+     "wchar_t", "while", "xor", "xor_eq",
+     // types
+     "Answer", "Calls", "Changes", "Choice", "Contains", "Effect", "Event", "In", "InRect", "IsRobot", "Len",
+     "Less", "LessEqual", "Lines", "List", "Local", "NamesOf", "Opaque", "Out", "Place", "Pos", "Program",
+     "Same", "Shared", "Splat", "Step", "Str", "Text", "To", "Two", "View", "World", "Writing", "cell",
+     "events", "formulas", "functions", "int64_t", "kRobots", "param", "rondo", "size_t", "std", "uint64_t",
+     // what is passed around
+     "at", "old", "pid", "r", "stopped", "to", "v"});
+
+}  // namespace
+
+std::string CppName(std::string_view name) {
+  const bool taken = std::ranges::find(kWords, name) != kWords.end();
+  return std::string(name) + (taken ? "_" : "");
+}
+
+std::string CppStem(std::string_view name) {
+  std::string stem;
+  for (const char c : name) stem += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' ? c : '_';
+  if (stem.empty() || std::isdigit(static_cast<unsigned char>(stem[0])) != 0) stem = "program_" + stem;
+  return CppName(stem);
+}
+
+std::string CppString(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      result += fmt::format("\\{}", c);
+    } else if (c == '?' || byte < 32 || byte > 126) {
+      result += fmt::format("\\{:03o}", byte);  // no trigraphs
+    } else {
+      result += c;
+    }
+  }
+  return result + "\"";
+}
+
+std::string ParameterText(const std::string& type, const std::string& name) {
+  const bool small = type == "int64_t" || type == "double" || type == "bool";
+  return small ? fmt::format("{} {}", type, name) : fmt::format("const {}& {}", type, name);
+}
+
+std::string CppFloat(double value) {
+  std::string text = fmt::format("{}", value + 0.0);
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
+}  // namespace rondo::codegen

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "codegen/koord/generate.h"
+#include "runs/fleet_files.h"
+#include "workspace/koord_files.h"
+
+/// Makes projects in C++ of Koord programs.
+namespace rondo::runs {
+
+/// Says what `rondo build` is to make.
+struct BuildRequest {
+  std::string file;                ///< the program, with or without `.koord`
+  std::string spec;                ///< empty: beside the program, if there is one
+  std::string fleet;               ///< empty: beside the program, if there is one and `robots` is not given
+  std::optional<uint64_t> robots;  ///< instead of those of the fleet
+  codegen::Capacities capacities;  ///< count more than those of the fleet
+};
+
+/// Is a project: its files by their names, and which of them belong to who uses it, and are not made again.
+struct BuiltProject {
+  std::string name;
+  size_t robots = 0;
+  std::map<std::string, std::string> files;
+  std::map<std::string, std::string> to_fill_in;
+};
+
+/// Returns the project of a program: the program, a class that answers its questions for the user to fill in, and what CMake needs
+/// to make a library of it. Returns nothing after a report.
+std::optional<BuiltProject> Build(const BuildRequest& request, workspace::Session& session);
+
+}  // namespace rondo::runs
