@@ -52,6 +52,8 @@ class Core {
   /// Takes a state. Returns false, and has none then, if it is none of this program, or a list has no room.
   virtual bool Load(std::span<const uint8_t> state) = 0;
   virtual void Save(Bytes& state) const = 0;
+  /// Gives variables their initial values in the state. Returns whether all had one.
+  virtual bool Begin(CoreHost& host) = 0;
   /// Return the effects of a robot in the state; those of its `init`; of one event, enabled or not.
   virtual std::vector<CoreEffect> Effects(size_t robot, CoreHost& host) = 0;
   virtual CoreEffect Init(size_t robot, CoreHost& host) = 0;
@@ -116,6 +118,10 @@ class CoreOf final : public Core {
     std::vector<CoreEffect> all;
     for (size_t k = 0; k < count; ++k) all.push_back(Tell(effects_[robot][k], robot));
     return all;
+  }
+  bool Begin(CoreHost& host) override {
+    Asking calls(host);
+    return P::Begin(now_.shared, now_.local, now_.in, now_.out, calls, effects_[0][0]);
   }
   CoreEffect Init(size_t robot, CoreHost& host) override {
     Asking calls(host);

@@ -2,6 +2,7 @@
 
 #include <bitset>
 #include <span>
+#include <utility>
 
 #include "program/step.h"
 
@@ -20,6 +21,7 @@ struct BasicEffect {
   Fault fault = Fault::kNone;  ///< why it cannot be completed; then nothing below counts
   Place place;                 ///< where that is
   std::bitset<kCells> wrote;   ///< the variables, and the items of arrays, that it writes
+  std::bitset<kCells> apart;     ///< those of them that the state never had
   Changes changes;             ///< their new values
   Lines<> said;                ///< what it writes to streams
 };
@@ -66,6 +68,13 @@ struct Writing {
     }
     return now;
   }
+  /// Returns where the new value of a variable waits that the event only writes.
+  template <typename T>
+  T& New(size_t cell, T& value) noexcept {
+    effect.wrote.set(cell);
+    effect.apart.set(cell);
+    return value;
+  }
   /// Returns an array `kDepth` levels deep, all of whose items count as written.
   template <int kDepth, typename T>
   T& KeepAll(size_t cell, T& kept, T& now) noexcept {
@@ -90,7 +99,7 @@ struct Writing {
     }
   }
   /// Ends what the robot does: it takes part in no round any more.
-  void Stop() noexcept { Keep(P::kStopped, effect.changes.stopped, me.stopped) = true; }
+  void Stop() noexcept { New(P::kStopped, effect.changes.stopped) = true; }
 };
 
 /// Is one event of a program, in functions.
@@ -127,6 +136,7 @@ void Clear(typename P::Effect& effect, typename P::Event event, bool urgent) noe
   effect.fault = Fault::kNone;
   effect.place = {};
   effect.wrote.reset();
+  effect.apart.reset();
   effect.said.Clear();
 }
 
@@ -140,20 +150,23 @@ void Note(const Step& step, typename P::Effect& effect) noexcept {
 // Gives the effect what was written, and the state what was there before.
 template <typename P>
 void Exchange(const Self<P>& self, typename P::Effect& effect) noexcept {
-  if (effect.wrote.none()) return;
+  const auto kept_here = effect.wrote & ~effect.apart;
+  if (kept_here.none()) return;
   P::EachCell(self.robot, effect.changes, self.shared, self.local, self.out,
               [&](size_t cell, auto& kept, auto& now) {
-                if (effect.wrote[cell]) std::swap(kept, now);
+                if (!kept_here[cell]) return;
+                using std::swap;
+                swap(kept, now);
               });
 }
 
 template <typename P>
-void Run(const Self<P>& self, void (*body)(Step&, const View<P>&, typename P::To&), typename P::Calls& calls,
+void Run(const Self<P>& self, const View<P>& view, void (*body)(Step&, const View<P>&, typename P::To&),
          Choice* choice, typename P::Effect& effect) noexcept {
   Step step(self.robot, false, choice);
   effect.ran = true;
   typename P::To to{{self.shared, self.local, self.out, effect, self.robot}};
-  body(step, ViewOf<P>(self, calls), to);
+  body(step, view, to);
   Note<P>(step, effect);
 }
 
@@ -169,29 +182,27 @@ template <typename P>
 size_t Effects(const Self<P>& self, typename P::Calls& calls, Choice* choice,
                std::span<typename P::Effect> effects) noexcept {
   if (self.local.stopped) return 0;
+  const View<P> view = detail::ViewOf<P>(self, calls);
   size_t count = 0;
   bool urgent = false;
-  for (size_t e = 0; e < P::kEvents.size() && count < effects.size(); ++e) {
-    const EventCode<P>& event = P::kEvents[e];
-    if (urgent && !event.urgent) continue;
-    typename P::Effect& effect = effects[count];
-    detail::Clear<P>(effect, static_cast<typename P::Event>(e), event.urgent);
+  const auto look = [&](const EventCode<P>& event, size_t number) {
+    if ((urgent && !event.urgent) || count == effects.size()) return;
     Step guard(self.robot);
-    if (event.guard != nullptr && !event.guard(guard, detail::ViewOf<P>(self, calls)) && !guard.failed())
-      continue;
+    if (event.guard != nullptr && !event.guard(guard, view) && !guard.failed()) return;
+    // An urgent event excludes those that are not.
+    if (event.urgent && !urgent) count = 0;
+    urgent = event.urgent;
+    typename P::Effect& effect = effects[count++];
+    detail::Clear<P>(effect, static_cast<typename P::Event>(number), event.urgent);
     detail::Note<P>(guard, effect);
-    if (!guard.failed()) {
-      detail::Run<P>(self, event.body, calls, choice, effect);
-      detail::Exchange<P>(self, effect);
-    }
-    ++count;
-    if (event.urgent && !urgent) {
-      // It excludes those that are not.
-      urgent = true;
-      if (count > 1) effects[0] = effect;
-      count = 1;
-    }
-  }
+    if (guard.failed()) return;
+    detail::Run<P>(self, view, event.body, choice, effect);
+    detail::Exchange<P>(self, effect);
+  };
+  // One after the other, so that compilers see each event by itself.
+  [&]<size_t... kNumbers>(std::index_sequence<kNumbers...>) {
+    (look(P::kEvents[kNumbers], kNumbers), ...);
+  }(std::make_index_sequence<P::kEvents.size()>());
   return count;
 }
 
@@ -200,8 +211,27 @@ template <typename P>
 void RunEvent(const Self<P>& self, size_t event, typename P::Calls& calls, Choice* choice,
               typename P::Effect& effect) noexcept {
   detail::Clear<P>(effect, static_cast<typename P::Event>(event), P::kEvents[event].urgent);
-  detail::Run<P>(self, P::kEvents[event].body, calls, choice, effect);
+  detail::Run<P>(self, detail::ViewOf<P>(self, calls), P::kEvents[event].body, choice, effect);
   detail::Exchange<P>(self, effect);
+}
+
+/// Gives all variables their initial values: those of the program, then what follows from `assume initially: x == e`. Sensors have to
+/// be there. To be called once, with everything else as it is made; `Init` comes next.
+/// @return whether all had values; what has none stays as it is
+template <typename P>
+bool Begin(typename P::Shared& shared, std::span<typename P::Local> local, std::span<const typename P::In> in,
+           std::span<typename P::Out> out, typename P::Calls& calls, typename P::Effect& effect) noexcept {
+  bool good = true;
+  for (const auto& begin : P::kBegins) {
+    for (size_t r = 0; r < (begin.per_robot ? local.size() : 1); ++r) {
+      const Self<P> self{static_cast<int64_t>(r), shared, local[r], in[r], out[r]};
+      detail::Clear<P>(effect, {}, false);
+      detail::Run<P>(self, detail::ViewOf<P>(self, calls), begin.body, nullptr, effect);
+      if (effect.fault != Fault::kNone) detail::Exchange<P>(self, effect);
+      good = good && effect.fault == Fault::kNone;
+    }
+  }
+  return good;
 }
 
 /// Runs the `init` blocks, one after the other, each of which reads what the ones before it wrote.
@@ -209,7 +239,7 @@ template <typename P>
 void Init(const Self<P>& self, typename P::Calls& calls, Choice* choice,
           typename P::Effect& effect) noexcept {
   detail::Clear<P>(effect, {}, true);
-  for (const auto body : P::kInits) detail::Run<P>(self, body, calls, choice, effect);
+  for (const auto body : P::kInits) detail::Run<P>(self, detail::ViewOf<P>(self, calls), body, choice, effect);
   effect.locks = false;
   detail::Exchange<P>(self, effect);
 }
@@ -219,7 +249,7 @@ template <typename P>
 void FallBack(const Self<P>& self, size_t fallback, typename P::Calls& calls,
               typename P::Effect& effect) noexcept {
   detail::Clear<P>(effect, {}, false);
-  detail::Run<P>(self, P::kFallbacks[fallback].body, calls, nullptr, effect);
+  detail::Run<P>(self, detail::ViewOf<P>(self, calls), P::kFallbacks[fallback].body, nullptr, effect);
   if (effect.fault != Fault::kNone) detail::Exchange<P>(self, effect);
 }
 

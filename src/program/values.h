@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <initializer_list>
 #include <memory>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
 
@@ -25,6 +28,8 @@ class List {
  public:
   using Item = T;
   static constexpr uint32_t kCapacity = kMost;
+  static constexpr bool kPlain = std::is_trivially_copyable_v<T>;
+  static constexpr bool kSmall = kPlain && sizeof(T) * kMost <= 256;
 
   List() noexcept {}
   /// Takes at most `kMost` items; more are a mistake of whoever wrote the program.
@@ -33,9 +38,24 @@ class List {
       if (size_ < kMost) Append(item);
     }
   }
+  // What is small is copied as it is.
+  List(const List& other) noexcept
+    requires kSmall
+  = default;
+  List& operator=(const List& other) noexcept
+    requires kSmall
+  = default;
+  ~List()
+    requires kSmall
+  = default;
   List(const List& other) noexcept { *this = other; }
   List& operator=(const List& other) noexcept {
     if (this == &other) return *this;
+    if constexpr (kPlain) {
+      for (size_t at = 0; at < other.size_ * sizeof(T); at += kBlock) std::memcpy(bytes_ + at, other.bytes_ + at, kBlock);
+      size_ = other.size_;
+      return *this;
+    }
     const uint32_t both = std::min(size_, other.size_);
     std::copy_n(other.items_, both, items_);
     if (other.size_ > both) {
@@ -76,10 +96,31 @@ class List {
     size_ = 0;
   }
 
+  /// Exchanges what two lists hold, at the cost of the longer one.
+  friend void swap(List& a, List& b) noexcept {
+    if constexpr (kPlain) {
+      std::byte block[kBlock];
+      for (size_t at = 0; at < std::max(a.size_, b.size_) * sizeof(T); at += kBlock) {
+        std::memcpy(block, a.bytes_ + at, kBlock);
+        std::memcpy(a.bytes_ + at, b.bytes_ + at, kBlock);
+        std::memcpy(b.bytes_ + at, block, kBlock);
+      }
+      std::swap(a.size_, b.size_);
+    } else {
+      const List before = a;
+      a = b;
+      b = before;
+    }
+  }
+
  private:
+  // Plain bytes are copied in blocks of this size: without a call, and without asking how many are left.
+  static constexpr size_t kBlock = 64;
+
   uint32_t size_ = 0;
   union {
     T items_[kMost];
+    std::byte bytes_[(sizeof(T) * kMost + kBlock - 1) / kBlock * kBlock];
   };
 };
 
@@ -136,6 +177,18 @@ constexpr int64_t Len(const auto& items) noexcept { return static_cast<int64_t>(
 /// Reports whether an item of a list or an array is this value.
 constexpr bool Contains(const auto& items, const auto& value) noexcept {
   return std::any_of(items.begin(), items.end(), [&](const auto& item) { return Same(item, value); });
+}
+
+/// Gives every item of an array, or of arrays in arrays, this value.
+template <typename Items, typename T>
+void Fill(Items& items, const T& value) noexcept {
+  for (auto& item : items) {
+    if constexpr (kIsArray<std::remove_cvref_t<decltype(item)>>) {
+      Fill(item, value);
+    } else {
+      item = value;
+    }
+  }
 }
 
 /// Reports whether a point lies in the box with these two corners.

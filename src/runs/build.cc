@@ -17,53 +17,6 @@ namespace {
 using koord::semantics::Team;
 using koord::semantics::TeamOptions;
 
-/// Holds what a program is made for.
-struct Source {
-  std::unique_ptr<workspace::LoadedKoord> loaded;
-  std::unique_ptr<Team> team;
-  codegen::Capacities capacities;
-};
-
-std::optional<Source> Load(const BuildRequest& request, workspace::Session& session) {
-  const SimulationFiles files = FindSimulationFiles(request.file, request.spec, request.fleet);
-  Source source;
-  source.capacities = request.capacities;
-  source.loaded = workspace::LoadKoord({files.program, files.spec, true}, session);
-  if (source.loaded == nullptr) return std::nullopt;
-  const koord::Model& model = source.loaded->model;
-  TeamOptions options;
-  options.hosted = [](size_t) { return true; };  // whoever uses the program answers its questions
-  koord::semantics::Heap heap;
-  std::error_code none;
-  if (!request.fleet.empty() || (!request.robots && std::filesystem::exists(files.fleet, none))) {
-    FleetFiles surroundings(files.fleet, session);
-    const auto file = workspace::ReadSource(files.fleet, workspace::Wanted::kToml, session);
-    if (!file) return std::nullopt;
-    const sim::Fleet fleet = surroundings.Read(*file);
-    if (session.diagnostics.has_errors()) return std::nullopt;
-    options.robots = fleet.robots.size();
-    sim::ReadParameters(model, fleet, options, heap, session.diagnostics);
-    for (const auto& [type, most] : fleet.capacities) {
-      const auto items = static_cast<uint32_t>(most);
-      if (type != "others") {
-        source.capacities.by_type.try_emplace(type, items);
-      } else if (!source.capacities.others) {
-        source.capacities.others = items;
-      }
-    }
-  } else if (!request.robots) {
-    session.diagnostics
-        .Report(diag::Kind::kKoordNotBuildable, {},
-                "nothing says for how many robots the program is to be made")
-        .Help(fmt::format("`--robots 4`, or a fleet: `{}` is not there", files.fleet));
-    return std::nullopt;
-  }
-  if (request.robots) options.robots = *request.robots;
-  source.team = Team::Make(model, options, session.diagnostics, std::move(heap));
-  if (source.team == nullptr || session.diagnostics.has_errors()) return std::nullopt;
-  return source;
-}
-
 constexpr const char* kCMake =
     R"(# Made by `rondo build`. What you add belongs into a CMakeLists.txt of yours, which adds this folder.
 cmake_minimum_required(VERSION 3.25)
@@ -102,8 +55,48 @@ std::string Answers(const codegen::GeneratedProgram& program) {
 
 }  // namespace
 
+std::optional<BuildSource> LoadToBuild(const BuildRequest& request, workspace::Session& session) {
+  const SimulationFiles files = FindSimulationFiles(request.file, request.spec, request.fleet);
+  BuildSource source;
+  source.capacities = request.capacities;
+  source.loaded = workspace::LoadKoord({files.program, files.spec, true}, session);
+  if (source.loaded == nullptr) return std::nullopt;
+  const koord::Model& model = source.loaded->model;
+  TeamOptions options;
+  options.hosted = [](size_t) { return true; };  // whoever uses the program answers its questions
+  koord::semantics::Heap heap;
+  std::error_code none;
+  if (!request.fleet.empty() || (!request.robots && std::filesystem::exists(files.fleet, none))) {
+    FleetFiles surroundings(files.fleet, session);
+    const auto file = workspace::ReadSource(files.fleet, workspace::Wanted::kToml, session);
+    if (!file) return std::nullopt;
+    const sim::Fleet fleet = surroundings.Read(*file);
+    if (session.diagnostics.has_errors()) return std::nullopt;
+    options.robots = fleet.robots.size();
+    sim::ReadParameters(model, fleet, options, heap, session.diagnostics);
+    for (const auto& [type, most] : fleet.capacities) {
+      const auto items = static_cast<uint32_t>(most);
+      if (type != "others") {
+        source.capacities.by_type.try_emplace(type, items);
+      } else if (!source.capacities.others) {
+        source.capacities.others = items;
+      }
+    }
+  } else if (!request.robots) {
+    session.diagnostics
+        .Report(diag::Kind::kKoordNotBuildable, {},
+                "nothing says for how many robots the program is to be made")
+        .Help(fmt::format("`--robots 4`, or a fleet: `{}` is not there", files.fleet));
+    return std::nullopt;
+  }
+  if (request.robots) options.robots = *request.robots;
+  source.team = Team::Make(model, options, session.diagnostics, std::move(heap));
+  if (source.team == nullptr || session.diagnostics.has_errors()) return std::nullopt;
+  return source;
+}
+
 std::optional<BuiltProject> Build(const BuildRequest& request, workspace::Session& session) {
-  const auto source = Load(request, session);
+  const auto source = LoadToBuild(request, session);
   if (!source) return std::nullopt;
   const std::string stem = std::filesystem::path(request.file).stem().string();
   const codegen::GeneratedProgram program =

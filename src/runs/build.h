@@ -22,6 +22,16 @@ struct BuildRequest {
   codegen::Capacities capacities;  ///< count more than those of the fleet
 };
 
+/// Holds what C++ is made of.
+struct BuildSource {
+  std::unique_ptr<workspace::LoadedKoord> loaded;
+  std::unique_ptr<koord::semantics::Team> team;  ///< points into `loaded`
+  codegen::Capacities capacities;
+};
+
+/// Loads a program for as many robots as the request or the fleet says, with its parameters. Returns nothing after a report.
+std::optional<BuildSource> LoadToBuild(const BuildRequest& request, workspace::Session& session);
+
 /// Is a project: its files by their names, and which of them belong to who uses it, and are not made again.
 struct BuiltProject {
   std::string name;

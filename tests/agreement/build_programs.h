@@ -95,6 +95,8 @@ def fun lost_one(Item item, int x):
         return x
 def fun total(int[2] xs) -> int:
     return xs[0] + xs[1]
+def fun last(int[3] xs) -> int:
+    return xs[2]
 def fun all_of(bool[4] xs) -> bool:
     return xs[0] and xs[3]
 def fun own(int x) -> int:
@@ -167,7 +169,7 @@ Lists:
         ll[item.id][0] = 5
         l = l[1:]
 Removing:
-    pre: total(deep[0]) >= 0 and all_of(seen)
+    pre: total(deep[0]) >= last(c) and all_of(seen)
     eff:
         l.remove(2)
         total(deep[1])

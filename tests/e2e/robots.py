@@ -515,12 +515,33 @@ def refusals(folder):
     check("launch: a fleet that does not exist", done.returncode == 1 and json.loads(done.stdout)["diagnostics"], done.stdout)
 
 
+def cores(folder):
+    """A fleet in which C++ runs the events of some robots, and the machine those of others: they are one team."""
+    made = folder / "cpp"
+    done = rondo("build", LINEFORM, "--fleet", TURTLES, "-o", made)
+    check("cores: made", done.returncode == 0, done.stderr)
+    headers = RONDO.parent.parent / "include"
+    library = made / "core.so"
+    done = subprocess.run(["c++", "-std=c++20", "-O1", "-shared", "-fPIC", "-ffp-contract=off", f"-I{headers}", f"-I{headers}/rondo",
+                           made / "lineform.cc", made / "lineform_core.cc", "-o", library], capture_output=True, text=True)
+    check("cores: compiled", done.returncode == 0, done.stderr)
+    status, report = launch(LINEFORM, "--fleet", TURTLES, "--duration", 5, "--core", f"bot1={library}", "--core", f"bot3={library}",
+                            "--logs", folder / "logs")
+    clean("cores", report, 15)
+    check("cores: status", status == 0, status, report)
+    check("cores: they move", moved(folder / "logs" / "bot1.mcap"))
+    done = rondo("launch", LINEFORM, "--fleet", TURTLES, "--core", f"bot9={library}")
+    check("cores: no such robot", done.returncode == 1 and "no robot `bot9`" in done.stderr, done.stderr)
+    done = rondo("run", LINEFORM, "--fleet", TURTLES, "--robot", "bot0", "--core", folder / "nothing.so")
+    check("cores: no library", done.returncode == 1 and "cannot load" in done.stderr, done.stderr)
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         parts = {"refusals": refusals, "fleets": fleets, "simulated_time": simulated_time, "adapters": adapters, "secured": secured, "logs": logs,
                  "altered": altered, "evict": lambda f: killed(f, "evict"), "halt": lambda f: killed(f, "halt"), "interrupted": interrupted,
-                 "doctor": doctor, "vendors": vendors, "rust": rust, "wire": wire, "mistakes": mistakes}
+                 "doctor": doctor, "vendors": vendors, "rust": rust, "cores": cores, "wire": wire, "mistakes": mistakes}
         for part in [parts[word] for word in sys.argv[2:]] or parts.values():
             part(folder)
     print(f"{len(problems)} problems")

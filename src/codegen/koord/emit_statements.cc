@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "codegen/koord/emitter.h"
 #include "codegen/koord/names.h"
+#include "codegen/koord/writes.h"
 #include "koord/check/targets.h"
 
 namespace rondo::codegen {
@@ -17,20 +18,37 @@ using koord::VariableKind;
 using lang::ExprKind;
 using lang::TypeKind;
 
-std::string Emitter::Body(const std::vector<Stmt>& body) {
+// Forgets the body before.
+void Emitter::Begin() {
   out_.clear();
   taken_.clear();
+  apart_.clear();
   depth_ = 1;
   view_ = "v";
   function_ = -1;
   uses_view_ = false;
+}
+
+std::string Emitter::Body(const std::vector<Stmt>& body, bool apart) {
+  Begin();
+  if (apart) apart_ = OnlyWritten(model_, body);
   Statements(body);
   return std::move(out_);
 }
 
+std::string Emitter::Initial(size_t v, ExprId value) {
+  Begin();
+  TypeId type = model_.variables[v].type;
+  const bool filled = model_.filled.contains(v);
+  while (filled && types_.Is(type, TypeKind::kArray)) type = model_.types[type].parts[0];
+  const Code code = GenAs(value, type);
+  const std::string target = fmt::format("to.{}()", Accessor(v, 0));
+  Line(filled ? fmt::format("Fill({}, {});", target, Typed(code)) : fmt::format("{} = {};", target, code.text));
+  return std::move(out_);
+}
+
 std::string Emitter::Formula(ExprId e) {
-  taken_.clear();
-  view_ = "v";
+  Begin();
   return fmt::format("  return {};\n", GenAs(e, model_.types.boolean()).text);
 }
 
@@ -165,11 +183,8 @@ void Emitter::If(const Stmt& stmt) {
 void Emitter::LoopRange(const Stmt& stmt) {
   const Code from = Gen(stmt.value);
   const Code to = Gen(stmt.operands[0]);
-  const uint32_t binding = model_.bound_by.at(&stmt)[0];
-  const std::string variable = Bind(binding);
-  const bool written = Writes(stmt.body, {RefKind::kBinding, binding});
-  const std::string index = written ? Fresh(variable + "_at") : variable;
-  const std::string body = Nested(stmt.body, written ? fmt::format("int64_t {} = {};", variable, index) : "");
+  const std::string index = Bind(model_.bound_by.at(&stmt)[0]);
+  const std::string body = Nested(stmt.body);
   Line(fmt::format("for (int64_t {0} = {1}, {0}_end = {2}; {0} < {0}_end; r.Next({0}, {0}_end, {3})) {{",
                    index, from.text, to.text, Here()));
   out_ += body;
@@ -236,15 +251,11 @@ void Emitter::LoopIn(const Stmt& stmt) {
                            items, types_.Member(element, i));
   }
   const std::string body = Nested(stmt.body, first);
-  Line("{");
-  ++depth_;
   Line(fmt::format("const auto{} {} = {};", copy ? "" : "&", items, list.text));
   Line(fmt::format(
-      "for (int64_t {0}_at = 0, {0}_end = Len({0}); {0}_at < {0}_end; r.Next({0}_at, {0}_end, {1})) {{",
-      items, Here()));
+      "for (int64_t {0}_at = 0, {0}_end = Len({0}); {0}_at < {0}_end; r.Next({0}_at, {0}_end, {1})) {{", items,
+      Here()));
   out_ += body;
-  Line("}");
-  --depth_;
   Line("}");
 }
 
@@ -298,7 +309,7 @@ void Emitter::Assign(ExprId target, const Code& value) {
   Line(fmt::format("{} = {};", Target(target).text, value.text));
 }
 
-std::string Emitter::Accessor(size_t v, size_t levels) {
+std::string Emitter::Accessor(size_t v, size_t levels, bool apart) {
   const koord::semantics::Layout::Place& place = team_.layout()[v];
   const koord::Variable& variable = model_.variables[v];
   const std::string name = NameOf(v);
@@ -310,11 +321,13 @@ std::string Emitter::Accessor(size_t v, size_t levels) {
   if (variable.kind == VariableKind::kAllread) now += "[pid]";
   const size_t depth = place.dimensions.size();
   std::string text, key = name;
-  if (levels == 0) {
-    text = depth == 0 ? fmt::format("auto& {}() noexcept {{ return Keep(cell::{}, {}, {}); }}", name, name,
-                                    kept, now)
-                      : fmt::format("auto& {}() noexcept {{ return KeepAll<{}>(cell::{}, {}, {}); }}", name,
-                                    depth, name, kept, now);
+  if (levels == 0 && depth == 0 && apart) {
+    key = "new_" + name;
+    text = fmt::format("auto& {}() noexcept {{ return New(cell::{}, {}); }}", key, name, kept);
+  } else if (levels == 0) {
+    text = depth == 0 ? fmt::format("auto& {}() noexcept {{ return Keep(cell::{}, {}, {}); }}", name, name, kept, now)
+                      : fmt::format("auto& {}() noexcept {{ return KeepAll<{}>(cell::{}, {}, {}); }}", name, depth,
+                                    name, kept, now);
   } else {
     key = depth == levels ? name + "_item" : fmt::format("{}_part{}", name, levels);
     text = fmt::format(
@@ -338,7 +351,7 @@ Code Emitter::Target(ExprId target) {
   const lang::Expr& e = exprs_[target];
   const Ref ref = model_.RefOf(target);
   if (ref.kind == RefKind::kVariable || ref.kind == RefKind::kCell)
-    return {fmt::format("to.{}()", Accessor(ref.index, 0))};
+    return {fmt::format("to.{}()", Accessor(ref.index, 0, apart_.contains(ref.index)))};
   if (ref.kind == RefKind::kBinding) return {bindings_.at(ref.index)};
   if (e.kind == ExprKind::kField) {
     const Code inner = Target(e.args[0]);

@@ -38,8 +38,11 @@ class Emitter {
   Emitter(const koord::semantics::Team& team, const diag::SourceSet& sources, Types& types,
           diag::Diagnostics& diagnostics);
 
-  /// Returns the lines of a body, indented by two spaces: of an event, a block of `init`, a fallback.
-  std::string Body(const std::vector<Stmt>& body);
+  /// Returns the lines of a body, indented by two spaces: of an event, a block of `init`, a fallback. `apart`: what it only writes
+  /// may wait elsewhere until it is over.
+  std::string Body(const std::vector<Stmt>& body, bool apart);
+  /// Returns the line that sets a variable to its initial value.
+  std::string Initial(size_t variable, ExprId value);
   /// Returns `return ...;` with the truth value of a formula. `old` is the state at the end of the program transition.
   std::string Formula(ExprId e);
   /// Returns the C++ of a value of type `type`.
@@ -68,6 +71,7 @@ class Emitter {
   std::string PlaceOf(diag::Span span) const;
 
  private:
+  void Begin();
   // emit_expressions.cc
   Code Gen(ExprId e);
   Code GenAs(ExprId e, TypeId type);
@@ -120,7 +124,7 @@ class Emitter {
   void Assign(ExprId target, const Code& value);
   Code Target(ExprId target);
   Code TargetElement(const Element& element, ExprId target);
-  std::string Accessor(size_t variable, size_t levels);
+  std::string Accessor(size_t variable, size_t levels, bool apart = false);
   void If(const Stmt& stmt);
   void LoopIn(const Stmt& stmt);
   void LoopRange(const Stmt& stmt);
@@ -145,6 +149,7 @@ class Emitter {
   size_t depth_ = 1;
   const char* view_ = "v";
   bool uses_view_ = false;
+  std::set<size_t> apart_;                    // variables that the body at hand only writes
   int function_ = -1;                         // whose body is being made
   std::map<uint32_t, std::string> bindings_;  // by binding: its name
   std::map<std::string, int> taken_;          // names in the body at hand, and how often

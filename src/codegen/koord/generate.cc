@@ -27,12 +27,16 @@ class Assembly {
         name_(CppStem(options.name)),
         digest_(options.digest),
         types_(team, options.capacities, diagnostics),
-        emitter_(team, sources, types_, diagnostics) {}
+        emitter_(team, sources, types_, diagnostics),
+        diagnostics_(diagnostics) {}
 
   GeneratedProgram Make() {
     Variables();
     const std::string events = Bodies();
     const std::string formulas = Formulas();
+    for (const std::string& type : types_.Unused())
+      diagnostics_.Report(diag::Kind::kKoordNotBuildable, {}, fmt::format("the program has no type `{}`", type))
+          .Help(fmt::format("types with a capacity: {}", fmt::join(types_.capable(), ", ")));
     std::vector<std::string> methods;
     for (const Emitter::External& external : emitter_.external_functions()) {
       std::string parameters;
@@ -72,6 +76,7 @@ class Assembly {
   uint64_t digest_;
   Types types_;
   Emitter emitter_;
+  diag::Diagnostics& diagnostics_;
   std::string params_, shared_, local_, in_, out_, changes_, cells_, each_cell_, each_shared_, each_own_;
   std::string events_, event_table_, tables_, table_names_, calls_;
 };
@@ -167,9 +172,9 @@ std::string Assembly::Signature(std::string text, const std::string& body, bool 
 
 std::string Assembly::Bodies() {
   std::string text, names;
-  std::vector<std::string> rows;
-  const auto body = [&](const std::string& function, const std::vector<koord::Stmt>& statements) {
-    const std::string lines = emitter_.Body(statements);
+  std::vector<std::string> rows, begins;
+  const auto body = [&](const std::string& function, const std::vector<koord::Stmt>& statements, bool apart) {
+    const std::string lines = emitter_.Body(statements, apart);
     text += fmt::format("{} {{\n{}}}\n\n", Signature(fmt::format("void {}(", function), lines, true), lines);
   };
   for (const EventCode& event : team_.events()) {
@@ -181,7 +186,7 @@ std::string Assembly::Bodies() {
       text +=
           fmt::format("{} {{\n{}}}\n\n", Signature(fmt::format("bool {}_guard(", name), guard, false), guard);
     }
-    body(name, event.def->body);
+    body(name, event.def->body, true);
     rows.push_back(fmt::format("{{{}, {}, {}, events::{}}}", CppString(event.def->name), event.urgent,
                                event.def->pre.valid() ? fmt::format("events::{}_guard", name) : "nullptr",
                                name));
@@ -190,14 +195,25 @@ std::string Assembly::Bodies() {
   tables_ += Table("Program::kEvents", "EventCode<Program>", rows);
   rows.clear();
   for (size_t i = 0; i < model_.inits.size(); ++i) {
-    body(fmt::format("init_{}", i), model_.inits[i]->body);
+    body(fmt::format("init_{}", i), model_.inits[i]->body, false);
     rows.push_back(fmt::format("events::init_{}", i));
   }
+  const auto initial = [&](const std::vector<koord::semantics::InitialCode>& codes) {
+    for (const koord::semantics::InitialCode& code : codes) {
+      const std::string name = "begin_" + emitter_.NameOf(code.variable);
+      const std::string line = emitter_.Initial(code.variable, code.value);
+      text += fmt::format("{} {{\n{}}}\n\n", Signature(fmt::format("void {}(", name), line, true), line);
+      begins.push_back(fmt::format("{{events::{}, {}}}", name, model_.variables[code.variable].PerRobot()));
+    }
+  };
+  initial(team_.declared());
+  initial(team_.derived());
+  tables_ += Table("Program::kBegins", "Program::BeginBody", begins);
   tables_ += Table("Program::kInits", "Program::InitBody", rows);
   rows.clear();
   for (const koord::FallbackDef* def : model_.fallbacks) {
     const std::string name = fmt::format("fallback_{}", CppName(def->module));
-    body(name, def->code.body);
+    body(name, def->code.body, false);
     rows.push_back(fmt::format("{{{}, false, nullptr, events::{}}}", CppString(def->module), name));
   }
   tables_ += Table("Program::kFallbacks", "EventCode<Program>", rows);
@@ -264,6 +280,7 @@ std::string Assembly::Header() {
     const std::string count = table_names_.substr(at, space - at);
     const std::string name = table_names_.substr(space + 10, end - space - 10);  // behind " Program::"
     const char* type = name == "kInits"                            ? "InitBody"
+                       : name == "kBegins"                          ? "BeginBody"
                        : name == "kPromises"                       ? "Promise"
                        : name == "kEvents" || name == "kFallbacks" ? "EventCode<Program>"
                                                                    : "FormulaCode<Program>";
@@ -324,6 +341,10 @@ struct Program {{
   using Calls = {name}::Calls;
   using To = {name}::To;
   using InitBody = void (*)(Step&, const View<Program>&, To&);
+  struct BeginBody {{
+    InitBody body;
+    bool per_robot;
+  }};
   struct Promise {{
     FormulaCode<Program> when;  ///< no function: always
     FormulaCode<Program> always;
@@ -336,6 +357,8 @@ struct Program {{
   // See `rondo/program/effects.h`.
   static size_t Effects(const Self<Program>& self, Calls& calls, Choice* choice, std::span<Effect> effects) noexcept;
   static void RunEvent(const Self<Program>& self, Event event, Calls& calls, Choice* choice, Effect& effect) noexcept;
+  static bool Begin(Shared& shared, std::span<Local> local, std::span<const In> in, std::span<Out> out, Calls& calls,
+                    Effect& effect) noexcept;
   static void Init(const Self<Program>& self, Calls& calls, Choice* choice, Effect& effect) noexcept;
   static void FallBack(const Self<Program>& self, size_t fallback, Calls& calls, Effect& effect) noexcept;
 
@@ -402,6 +425,10 @@ size_t Program::Effects(const Self<Program>& self, Calls& calls, Choice* choice,
 }}
 void Program::RunEvent(const Self<Program>& self, Event event, Calls& calls, Choice* choice, Effect& effect) noexcept {{
   rondo::program::RunEvent<Program>(self, static_cast<size_t>(event), calls, choice, effect);
+}}
+bool Program::Begin(Shared& shared, std::span<Local> local, std::span<const In> in, std::span<Out> out, Calls& calls,
+                    Effect& effect) noexcept {{
+  return rondo::program::Begin<Program>(shared, local, in, out, calls, effect);
 }}
 void Program::Init(const Self<Program>& self, Calls& calls, Choice* choice, Effect& effect) noexcept {{
   rondo::program::Init<Program>(self, calls, choice, effect);

@@ -28,17 +28,14 @@ std::optional<uint32_t> Types::LengthOf(TypeId array) const {
 
 std::optional<uint32_t> Types::CapacityOf(TypeId type) const {
   const std::string name = types_.Name(type);
-  const auto own = capacities_.by_type.find(name);
-  if (own == capacities_.by_type.end()) return capacities_.others;
   asked_.insert(name);
-  return own->second;
+  const auto own = capacities_.by_type.find(name);
+  return own == capacities_.by_type.end() ? capacities_.others : own->second;
 }
 
 uint32_t Types::TextCapacity() const {
   const auto own = capacities_.by_type.find("string");
-  if (own == capacities_.by_type.end()) return kTextBytes;
-  asked_.insert("string");
-  return own->second;
+  return own == capacities_.by_type.end() ? kTextBytes : own->second;
 }
 
 std::vector<std::string> Types::Unused() const {

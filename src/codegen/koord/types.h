@@ -45,6 +45,8 @@ class Types {
   uint32_t TextCapacity() const;
   /// Returns the names of capacities that no type of the program has.
   std::vector<std::string> Unused() const;
+  /// Returns the types of the program that have a capacity.
+  const std::set<std::string>& capable() const { return asked_; }
 
  private:
   std::string Define(TypeId type, diag::Span where);
@@ -57,7 +59,7 @@ class Types {
   std::map<std::string, std::string> names_;  // by the name in the program
   std::set<std::string> defining_;
   std::set<std::string> refused_;
-  mutable std::set<std::string> asked_;
+  mutable std::set<std::string> asked_;  // those whose capacity somebody asked for
   std::string definitions_;
 };
 
