@@ -62,7 +62,8 @@ struct MappingAnswers final : mapping::Calls {
     cells.Append(map);
     return Answer::kValue;
   }
-  Answer MotionWithScan_planner(int64_t, const Pos&, const List<Map, 16>&, List<Pos, 16>& path) noexcept override {
+  Answer MotionWithScan_planner(int64_t, const Pos&, const List<Map, 16>&,
+                                List<Pos, 16>& path) noexcept override {
     path = kPath;
     return Answer::kValue;
   }
@@ -88,15 +89,16 @@ class Host final : public rondo::koord::semantics::Host {
     }
     path_ = heap_.Intern(path);
     for (const auto& function : team.model().functions) {
-      kinds_.push_back(function.name == "pathIsClear"            ? kYes
-                       : function.name == "findObs"              ? kOneCell
-                       : function.name == "pickFrontierPos"      ? kPoint
-                       : function.name == "scanToMap"            ? kScan
-                       : function.name.ends_with("planner")      ? kWay
-                                                                 : kFirst);
+      kinds_.push_back(function.name == "pathIsClear"       ? kYes
+                       : function.name == "findObs"         ? kOneCell
+                       : function.name == "pickFrontierPos" ? kPoint
+                       : function.name == "scanToMap"       ? kScan
+                       : function.name.ends_with("planner") ? kWay
+                                                            : kFirst);
     }
   }
-  rondo::koord::semantics::Answer Call(size_t f, size_t, std::span<const Word> arguments, std::span<Word> result) override {
+  rondo::koord::semantics::Answer Call(size_t f, size_t, std::span<const Word> arguments,
+                                       std::span<Word> result) override {
     switch (kinds_[f]) {
       case kYes:
         result[0] = 1;
@@ -136,7 +138,8 @@ void Sense(rondo::koord::semantics::Team& team, std::mt19937_64& random, std::ve
     for (size_t r = 0; r < team.robots(); ++r) {
       Word* at = &state[team.layout().Address(v, r)];
       if (model.variables[v].name.ends_with("psn")) {
-        for (int k = 0; k < 3; ++k) at[k] = rondo::koord::semantics::FromFloat(static_cast<double>(random() % 50) / 4);
+        for (int k = 0; k < 3; ++k)
+          at[k] = rondo::koord::semantics::FromFloat(static_cast<double>(random() % 50) / 4);
       } else if (model.variables[v].name.ends_with("reached")) {
         at[0] = random() % 2;
       } else {
@@ -158,7 +161,8 @@ std::vector<std::vector<Word>> States(rondo::koord::semantics::Team& team, const
       std::vector<Word> list;
       for (Word id = 0; id < 12; ++id) {
         list.push_back(id);
-        for (int k = 0; k < 3; ++k) list.push_back(rondo::koord::semantics::FromFloat(static_cast<double>(random() % 50)));
+        for (int k = 0; k < 3; ++k)
+          list.push_back(rondo::koord::semantics::FromFloat(static_cast<double>(random() % 50)));
       }
       state[team.layout().Address(v, 0)] = team.heap().Intern(list);
     }
@@ -192,7 +196,8 @@ template <typename P, typename Answers>
 bool Measure(const char* name, const char* tasks, bool check) {
   rondo::workspace::Session session;
   const std::string file = std::string("examples/koord/") + name + ".koord";
-  auto source = rondo::runs::LoadToBuild({file, "", std::string("examples/koord/") + name + ".toml", kRobots, {16, {}}}, session);
+  auto source = rondo::runs::LoadToBuild(
+      {file, "", std::string("examples/koord/") + name + ".toml", kRobots, {16, {}}}, session);
   if (!source) return fmt::print("{} cannot be loaded\n", file), false;
   rondo::koord::semantics::Team& team = *source->team;
   Host host(team);
@@ -219,7 +224,8 @@ bool Measure(const char* name, const char* tasks, bool check) {
   for (uint64_t k = 0; k < steps; ++k) {
     Typed<P>& t = typed[k / kRobots % typed.size()];
     const size_t r = k % kRobots;
-    found += P::Effects({static_cast<int64_t>(r), t.shared, t.local[r], t.in[r], t.out[r]}, answers, nullptr, effects);
+    found += P::Effects({static_cast<int64_t>(r), t.shared, t.local[r], t.in[r], t.out[r]}, answers, nullptr,
+                        effects);
   }
   const double cpp = Since(begin) / static_cast<double>(steps);
   const size_t taken = allocations - before;
@@ -236,8 +242,10 @@ bool Measure(const char* name, const char* tasks, bool check) {
     if (taken != 0) fmt::print("{}: {} steps took memory {} times\n", name, steps, taken);
     return taken == 0 && found > 0 && again > 0;
   }
-  fmt::print("{:10} {:8.0f} ns by the machine {:8.1f} ns as C++ {:6.1f} times faster; {} allocations in {} steps, {:.2f} effects each\n",
-             name, 1e9 * machine, 1e9 * cpp, machine / cpp, taken, steps, static_cast<double>(found) / static_cast<double>(steps));
+  fmt::print(
+      "{:10} {:8.0f} ns by the machine {:8.1f} ns as C++ {:6.1f} times faster; {} allocations in {} steps, {:.2f} effects each\n",
+      name, 1e9 * machine, 1e9 * cpp, machine / cpp, taken, steps,
+      static_cast<double>(found) / static_cast<double>(steps));
   return true;
 }
 

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -28,6 +29,7 @@ struct Options {
   std::vector<size_t> robots;
   uint32_t depth = 0;
   uint64_t states = 100'000'000;
+  uint64_t memory = 0;
   bool deadlock = false;
   bool no_symmetry = false;
   bool no_reduction = false;
@@ -42,6 +44,7 @@ struct Options {
 
 const char* Word(const runs::Explored& e, const Options& options) {
   if (options.walks > 0) return e.broken ? "a run is broken" : "random walks";
+  if (e.left) return "left unfinished";
   switch (e.search.ending) {
     case Ending::kComplete:
       return options.compact ? "complete up to hash collisions" : "complete";
@@ -49,6 +52,8 @@ const char* Word(const runs::Explored& e, const Options& options) {
       return "up to the depth";
     case Ending::kStates:
       return "too many states";
+    case Ending::kMemory:
+      return "too much memory";
     case Ending::kStopped:
       return "interrupted";
     case Ending::kBroken:
@@ -125,11 +130,18 @@ ExitStatus StatusOf(const std::vector<runs::Explored>& all, const Options& optio
   bool undecided = false;
   for (const runs::Explored& e : all) {
     if (e.broken || e.unusable) return ExitStatus::kRejected;
-    const bool cut = e.search.ending == Ending::kStates || e.search.ending == Ending::kStopped;
+    const bool cut = e.search.ending == Ending::kStates || e.search.ending == Ending::kMemory ||
+                     e.search.ending == Ending::kStopped;
     undecided = undecided || cut || e.stuck || !e.unchecked.empty() ||
                 (options.walks > 0 && e.walked < options.walks);
   }
   return undecided ? ExitStatus::kUndecided : ExitStatus::kEstablished;
+}
+
+// Three quarters of what the machine has: who takes more is ended by it, with nothing to show.
+size_t UsableMemory() {
+  const auto pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGESIZE);
+  return pages <= 0 || size <= 0 ? SIZE_MAX : static_cast<size_t>(pages) / 4 * 3 * static_cast<size_t>(size);
 }
 
 ExitStatus Run(const Options& options) {
@@ -147,6 +159,7 @@ ExitStatus Run(const Options& options) {
   runs::ExplorationOptions exploration;
   if (options.depth > 0) exploration.rounds = options.depth;
   exploration.states = options.states;
+  exploration.memory = options.memory > 0 ? options.memory << 20 : UsableMemory();
   exploration.compact = options.compact;
   exploration.deadlocks = options.deadlock;
   exploration.reduce = !options.no_reduction;
@@ -157,16 +170,14 @@ ExitStatus Run(const Options& options) {
   if (good) {
     ProgressLine line;
     const InterruptScope interrupt(exploration.stop);
-    for (const size_t n : sizes) {
-      exploration.progress = [&](const explore::SearchOptions::Progress& p) {
-        line.Show(fmt::format("[N = {}] {} states, {:.0f} states/s, frontier {}, depth {}", n, p.states,
-                              static_cast<double>(p.states) / std::max(p.seconds, 1e-9), p.frontier,
-                              p.depth));
-      };
-      all.push_back(runs::Explore(loaded->model, n, exploration, session.diagnostics));
-      // The first counterexample has the fewest robots; what cannot be run with one size cannot with another.
-      if (all.back().broken || all.back().unusable || exploration.stop.cancelled()) break;
-    }
+    all = runs::ExploreSizes(
+        loaded->model, sizes, exploration,
+        [&](size_t n, const explore::SearchOptions::Progress& p) {
+          line.Show(fmt::format("[N = {}] {} states, {:.0f} states/s, frontier {}, depth {}", n, p.states,
+                                static_cast<double>(p.states) / std::max(p.seconds, 1e-9), p.frontier,
+                                p.depth));
+        },
+        session.diagnostics);
   }
   const bool complete = !all.empty() && std::all_of(all.begin(), all.end(), [&](const runs::Explored& e) {
     return options.walks == 0 && !e.unusable && e.search.ending == Ending::kComplete && !e.broken;
@@ -236,6 +247,9 @@ void AddExploreVerb(CLI::App& app, ExitStatus& status) {
   verb.Option("--depth", options->depth, "explore no more than so many rounds").Between(1U, 1'000'000'000U);
   verb.Option("--states", options->states, "give up beyond so many states; default: 100000000")
       .Between(uint64_t{1}, uint64_t{4'000'000'000});
+  verb.Option("--memory", options->memory,
+              "give up before states take more than so many MB; default: three quarters of the machine's")
+      .Between(uint64_t{1}, uint64_t{1'000'000'000});
   verb.Flag("--deadlock", options->deadlock, "look for states in which nothing can happen any more");
   verb.Flag("--no-symmetry", options->no_symmetry, "count states that differ in the names of robots apart");
   verb.Flag("--no-reduction", options->no_reduction,

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -17,6 +19,7 @@ namespace rondo::explore {
 struct SearchOptions {
   std::optional<uint32_t> depth;  ///< at most so many transitions from an initial state; none: no limit
   uint64_t states = 100'000'000;  ///< the search gives up once it has visited so many
+  size_t memory = SIZE_MAX;       ///< ... or before it takes more than so many bytes
   /// Hash compaction: a hash for each state instead of its words; a state may be missed.
   bool compact = false;
   bool deadlocks = false;  ///< whether a state that `Deadlocked` accepts ends the search
@@ -27,7 +30,8 @@ struct SearchOptions {
     uint32_t depth;
     double seconds;  ///< since the search began
   };
-  std::function<void(const Progress&)> progress;  ///< called now and then, at most every 200 ms
+  std::function<void(const Progress&)>
+      progress;  ///< called now and then, at most every 200 ms, also in the middle of a state
   base::StopToken stop;
 };
 
@@ -36,6 +40,7 @@ enum class Ending : uint8_t {
   kComplete,  ///< every reachable state was visited, and nothing is wrong
   kDepth,     ///< every state up to the depth was visited, and nothing is wrong
   kStates,    ///< the limit of states was reached
+  kMemory,    ///< the limit of memory was reached
   kStopped,   ///< the stop token asked for it
   kBroken,    ///< a property is broken; `path` leads there
   kDeadlock,  ///< a state is dead; `path` leads there
@@ -74,7 +79,7 @@ class Searcher {
     }
     result_.states = visited_.size();
     result_.seconds = Seconds();
-    result_.bytes = visited_.bytes() + parent_.capacity() * sizeof(uint32_t);
+    result_.bytes = visited_.bytes() + OtherBytes();
     if (bad_ != kNone) FindPath();
     return std::move(result_);
   }
@@ -91,8 +96,15 @@ class Searcher {
   }
 
   Seen Meet(std::span<const Word> state) {
-    if ((++result_.transitions & 0xffff) == 0 && options_.stop.StopRequested()) {
-      stopped_ = true;
+    if ((++result_.transitions & 0xfff) == 0) {
+      Tell();
+      if (options_.stop.StopRequested()) {
+        stopped_ = true;
+        return Seen::kStop;
+      }
+    }
+    if (visited_.bytes_next() + OtherBytes() > options_.memory) {
+      large_ = true;
       return Seen::kStop;
     }
     bool fresh = false;
@@ -112,6 +124,8 @@ class Searcher {
       End(Ending::kBroken);
     } else if (stopped_) {
       End(Ending::kStopped);
+    } else if (large_) {
+      End(Ending::kMemory);
     } else if (full_) {
       End(Ending::kStates);
     }
@@ -140,18 +154,24 @@ class Searcher {
         break;
       }
       Judge(system_.Successors(state_, visit_));
-      if ((++polled_ & 0xff) == 0) Poll();
+      if ((++polled_ & 0xff) != 0) continue;
+      Tell();
+      if (options_.stop.StopRequested() && !done_) End(Ending::kStopped);
     }
     if (visited_.size() > level_end_) ++result_.depth;
     level_end_ = static_cast<uint32_t>(visited_.size());
   }
 
-  void Poll() {
+  void Tell() {
+    if (!options_.progress) return;
     const auto now = Clock::now();
-    if (options_.stop.StopRequested() && !done_) End(Ending::kStopped);
-    if (!options_.progress || now - last_ <= std::chrono::milliseconds(200)) return;
+    if (now - last_ <= std::chrono::milliseconds(200)) return;
     last_ = now;
     options_.progress({visited_.size(), visited_.size() - at_, result_.depth, Seconds()});
+  }
+
+  size_t OtherBytes() const {
+    return parent_.size() * sizeof(uint32_t) + (frontier_.capacity() + next_.capacity()) * sizeof(Word);
   }
 
   // The numbers of the path are known; its states are found again from the initial ones.
@@ -178,8 +198,8 @@ class Searcher {
   const SearchOptions& options_;
   SearchResult result_;
   VisitedSet visited_;
-  std::vector<uint32_t> parent_;  // by number of a state
-  std::vector<Word> frontier_;    // with hash compaction: the words of the states of this level
+  std::deque<uint32_t> parent_;  // by number of a state
+  std::vector<Word> frontier_;   // with hash compaction: the words of the states of this level
   std::vector<Word> next_;
   std::vector<Word> state_ = std::vector<Word>(system_.words());
   const Visit visit_ = [this](std::span<const Word> state) { return Meet(state); };
@@ -189,6 +209,7 @@ class Searcher {
   uint32_t bad_ = kNone;
   uint64_t polled_ = 0;
   bool full_ = false;
+  bool large_ = false;
   bool stopped_ = false;  // in the middle of a state
   bool done_ = false;
   const Clock::time_point begin_ = Clock::now();
@@ -198,7 +219,7 @@ class Searcher {
 /// Searches breadth first from all initial states, by one thread.
 ///
 /// Exact unless `options.compact`: then a state whose hash was seen before is taken for visited. Memory is
-/// O(states): the words of each state (or its hash) and 12 to 20 bytes more, spare capacity aside.
+/// O(states): the words of each state (or its hash) and 10 to 15 bytes more.
 template <TransitionSystem S>
 SearchResult Search(S& system, const SearchOptions& options) {
   return Searcher<S>(system, options).Run();

@@ -85,6 +85,42 @@ TEST(Search, KeepsItsBoundsAndSaysSo) {
   EXPECT_EQ(Search(system, options).ending, Ending::kStopped);
 }
 
+TEST(Search, EndsBeforeItTakesTooMuchMemory) {
+  Counters system;
+  system.limit = 900;
+  SearchOptions options;
+  options.memory = 1'000'000;
+  const SearchResult result = Search(system, options);
+  EXPECT_EQ(result.ending, Ending::kMemory);
+  EXPECT_GT(result.states, 10'000U);
+  EXPECT_LE(result.bytes, options.memory);
+  options.compact = true;
+  EXPECT_LE(Search(system, options).bytes, options.memory);
+}
+
+TEST(Search, TellsHowFarItIsInTheMiddleOfAState) {
+  // The first state has very many successors.
+  struct Wide {
+    static size_t words() { return 1; }
+    Broken Initial(const Visit& visit) const {
+      const Word zero = 0;
+      visit({&zero, 1});
+      return {};
+    }
+    Broken Successors(std::span<const Word>, const Visit& visit) const {
+      for (Word next = 0; next < 20'000'000 && !told; ++next) visit({&next, 1});
+      return {};
+    }
+    static bool Deadlocked(std::span<const Word>) { return false; }
+    bool told = false;
+  } system;
+  SearchOptions options;
+  options.depth = 1;
+  options.progress = [&](const SearchOptions::Progress& p) { system.told = p.depth == 0; };
+  Search(system, options);
+  EXPECT_TRUE(system.told);
+}
+
 TEST(Search, FindsDeadlocksWhenAsked) {
   Counters system;
   SearchOptions options;

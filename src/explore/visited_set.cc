@@ -19,10 +19,10 @@ uint64_t VisitedSet::Hash(std::span<const Word> state) {
 }
 
 void VisitedSet::Grow() {
-  table_.assign(table_.size() * 2, 0);
+  table_ = std::vector<uint32_t>(table_.size() * 2);
   const size_t mask = table_.size() - 1;
   for (size_t i = 0; i < count_; ++i) {
-    const Word* state = states_.data() + i * words_;
+    const Word* state = Stored(i);
     size_t at = (compact_ ? *state : Hash({state, words_})) & mask;
     while (table_[at] != 0) at = (at + 1) & mask;
     table_[at] = static_cast<uint32_t>(i + 1);
@@ -32,29 +32,26 @@ void VisitedSet::Grow() {
 uint32_t VisitedSet::Insert(std::span<const Word> state, bool& fresh) {
   const uint64_t hash = Hash(state);
   const std::span<const Word> key = compact_ ? std::span<const Word>(&hash, 1) : state;
+  if (Full()) Grow();
   const size_t mask = table_.size() - 1;
   size_t at = hash & mask;
   for (; table_[at] != 0; at = (at + 1) & mask) {
     const size_t i = table_[at] - 1;
-    if (std::equal(key.begin(), key.end(), states_.data() + i * words_)) {
+    if (std::equal(key.begin(), key.end(), Stored(i))) {
       fresh = false;
       return static_cast<uint32_t>(i);
     }
   }
   fresh = true;
-  states_.insert(states_.end(), key.begin(), key.end());
+  if (count_ % kBlock == 0) blocks_.push_back(std::make_unique_for_overwrite<Word[]>(kBlock * words_));
+  std::copy(key.begin(), key.end(), Stored(count_));
   table_[at] = static_cast<uint32_t>(++count_);
-  if (count_ * 2 > table_.size()) Grow();
   return static_cast<uint32_t>(count_ - 1);
 }
 
 bool VisitedSet::Is(std::span<const Word> state, uint32_t number) const {
-  const Word* stored = states_.data() + static_cast<size_t>(number) * words_;
+  const Word* stored = Stored(number);
   return compact_ ? *stored == Hash(state) : std::equal(state.begin(), state.end(), stored);
-}
-
-size_t VisitedSet::bytes() const {
-  return states_.capacity() * sizeof(Word) + table_.capacity() * sizeof(uint32_t);
 }
 
 }  // namespace rondo::explore

@@ -21,7 +21,7 @@ struct BasicEffect {
   Fault fault = Fault::kNone;  ///< why it cannot be completed; then nothing below counts
   Place place;                 ///< where that is
   std::bitset<kCells> wrote;   ///< the variables, and the items of arrays, that it writes
-  std::bitset<kCells> apart;     ///< those of them that the state never had
+  std::bitset<kCells> apart;   ///< those of them that the state never had
   Changes changes;             ///< their new values
   Lines<> said;                ///< what it writes to streams
 };
@@ -239,7 +239,8 @@ template <typename P>
 void Init(const Self<P>& self, typename P::Calls& calls, Choice* choice,
           typename P::Effect& effect) noexcept {
   detail::Clear<P>(effect, {}, true);
-  for (const auto body : P::kInits) detail::Run<P>(self, detail::ViewOf<P>(self, calls), body, choice, effect);
+  for (const auto body : P::kInits)
+    detail::Run<P>(self, detail::ViewOf<P>(self, calls), body, choice, effect);
   effect.locks = false;
   detail::Exchange<P>(self, effect);
 }

@@ -280,9 +280,10 @@ class Step {
     if (!pen.whole()) Fail(Fault::kTooLong, at);
     return TextType({text, static_cast<size_t>(pen.at() - text)});
   }
-  template <typename Said, typename T>
-  void Say(Said& said, const T& value, Place at) noexcept {
-    if (!failed() && !said.Say(value)) Fail(Fault::kTooLong, at);
+  /// Writes one line of these values.
+  template <typename Said, typename... T>
+  void Say(Said& said, Place at, const T&... values) noexcept {
+    if (!failed() && !said.Say(values...)) Fail(Fault::kTooLong, at);
   }
 
   // `any`.

@@ -95,12 +95,12 @@ class Lines {
     const uint32_t begin = line == 0 ? 0 : ends_[line - 1];
     return {text_ + begin, ends_[line] - begin};
   }
-  /// Appends a line. Returns false if there is no room for it.
-  template <typename T>
-  bool Say(const T& value) noexcept {
+  /// Appends a line of these values. Returns false if there is no room for it.
+  template <typename... T>
+  bool Say(const T&... values) noexcept {
     if (count_ == kLines) return false;
     Pen pen(text_ + (count_ == 0 ? 0 : ends_[count_ - 1]), text_ + kBytes);
-    ShowPlain(pen, value);
+    (ShowPlain(pen, values), ...);
     if (!pen.whole()) return false;
     ends_[count_++] = static_cast<uint32_t>(pen.at() - text_);
     return true;

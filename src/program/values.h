@@ -52,7 +52,8 @@ class List {
   List& operator=(const List& other) noexcept {
     if (this == &other) return *this;
     if constexpr (kPlain) {
-      for (size_t at = 0; at < other.size_ * sizeof(T); at += kBlock) std::memcpy(bytes_ + at, other.bytes_ + at, kBlock);
+      for (size_t at = 0; at < other.size_ * sizeof(T); at += kBlock)
+        std::memcpy(bytes_ + at, other.bytes_ + at, kBlock);
       size_ = other.size_;
       return *this;
     }

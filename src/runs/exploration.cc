@@ -290,6 +290,7 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
     explore::SearchOptions search;
     if (options.rounds) search.depth = *options.rounds * system.phases();
     search.states = options.states;
+    search.memory = options.memory;
     search.compact = options.compact;
     search.deadlocks = options.deadlocks;
     search.progress = options.progress;
@@ -314,6 +315,46 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
   for (const auto& [stmt, otherwise] : team->branches())
     explored.branch_spans.push_back(otherwise && !stmt->has_else ? diag::Span{} : stmt->span);
   return explored;
+}
+
+std::vector<Explored> ExploreSizes(
+    const koord::Model& model, const std::vector<size_t>& sizes, const ExplorationOptions& options,
+    const std::function<void(size_t, const explore::SearchOptions::Progress&)>& progress,
+    diag::Diagnostics& diagnostics) {
+  constexpr uint64_t kFirstTurn = 200'000;  // states
+  constexpr uint64_t kMore = 8;  // times as many in the next one: what is done again is a seventh of the work
+  std::map<size_t, Explored> found;
+  std::map<size_t, diag::Diagnostics> reports;
+  std::vector<size_t> open = sizes;
+  bool over = false;
+  for (uint64_t turn = options.walks > 0 ? options.states : kFirstTurn; !open.empty() && !over;
+       turn *= kMore) {
+    const bool last = turn >= options.states || open.size() == 1;  // nobody waits
+    std::vector<size_t> unfinished;
+    for (const size_t n : open) {
+      ExplorationOptions now = options;
+      now.states = last ? options.states : turn;
+      if (progress) now.progress = [&](const explore::SearchOptions::Progress& p) { progress(n, p); };
+      reports[n] = {};
+      Explored& e = found[n] = Explore(model, n, now, reports[n]);
+      // What cannot be run with one size cannot with another.
+      over = e.broken || e.unusable || options.stop.cancelled();
+      if (over) break;
+      if (e.search.ending == Ending::kStates && !last) unfinished.push_back(n);
+    }
+    for (const size_t n : open) {
+      if (over && found.contains(n) && found[n].search.ending == Ending::kStates && !found[n].broken &&
+          turn < options.states)
+        found[n].left = !options.stop.cancelled();
+    }
+    open = std::move(unfinished);
+  }
+  std::vector<Explored> all;
+  for (auto& [n, e] : found) {
+    for (const diag::Diagnostic& d : reports[n].all()) diagnostics.Report(d.kind, d.span, d.message) = d;
+    all.push_back(std::move(e));
+  }
+  return all;
 }
 
 }  // namespace rondo::runs

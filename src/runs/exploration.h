@@ -20,6 +20,7 @@ namespace rondo::runs {
 struct ExplorationOptions {
   std::optional<uint32_t> rounds;  ///< depth bound
   uint64_t states = 100'000'000;   ///< how many states are visited at most
+  size_t memory = SIZE_MAX;        ///< how many bytes they take at most
   bool compact = false;    ///< keeps hashes of states only, so that a state may be missed (explore/search.h)
   bool deadlocks = false;  ///< reports states in which nothing can change any more
   bool reduce = true;      ///< see SystemOptions, and so for `symmetry`
@@ -45,6 +46,7 @@ struct Explored {  // NOLINT(bugprone-exception-escape): moving JSON checks itse
   bool stuck = false;             ///< somewhere no declared value of a sensor was allowed
   bool rounded = false;           ///< doubles were rounded in the run that breaks something
   bool unusable = false;          ///< the program cannot be executed: reported
+  bool left = false;              ///< it was left unfinished, since another size breaks something
   uint64_t walked = 0;            ///< how many random walks were made
   nlohmann::json run;             ///< the counterexample, for `rondo replay`; null if there is none
   std::string property;           ///< what the run breaks, as `Replay` takes it
@@ -59,6 +61,14 @@ struct Explored {  // NOLINT(bugprone-exception-escape): moving JSON checks itse
 /// of robots, in time and memory, up to `states`.
 Explored Explore(const koord::Model& model, size_t robots, const ExplorationOptions& options,
                  diag::Diagnostics& diagnostics);
+
+/// Explores teams of several sizes, which take turns with more and more states, so that one that has no end hides no other. Ends with
+/// the first that breaks something or cannot be run. Returns what was found of each size that had a turn, in the order of the sizes.
+/// `progress` gets the size that is at work.
+std::vector<Explored> ExploreSizes(
+    const koord::Model& model, const std::vector<size_t>& sizes, const ExplorationOptions& options,
+    const std::function<void(size_t, const explore::SearchOptions::Progress&)>& progress,
+    diag::Diagnostics& diagnostics);
 
 /// Returns the team sizes that the `explore` section names. Empty: none, or (after a report) no numbers.
 std::vector<size_t> DeclaredSizes(const koord::Model& model, diag::Diagnostics& diagnostics);

@@ -1,5 +1,7 @@
 // Programs as C++ (`codegen`) do what the machine does: everything that each robot could do, what a round makes of it, and what
 // the specification says of it, in states that runs reach and in random ones. All programs are one library, which is compiled here.
+#include "runs/build.h"
+
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -19,7 +21,6 @@
 #include "koord/semantics/program_transition.h"
 #include "koord_texts.h"
 #include "program/core.h"
-#include "runs/build.h"
 
 namespace rondo::koord {
 namespace {
@@ -327,7 +328,8 @@ class Comparison {
     team_.machine().SetMemory(state.data());
     for (const auto* codes : {&team_.declared(), &team_.derived()}) {
       for (const auto& code : *codes) {
-        for (size_t r = 0; r < (team_.model().variables[code.variable].PerRobot() ? team_.robots() : 1); ++r) {
+        for (size_t r = 0; r < (team_.model().variables[code.variable].PerRobot() ? team_.robots() : 1);
+             ++r) {
           if (team_.machine().Run(code.entry, r, false)) continue;
           team_.machine().Undo();
           all = false;
@@ -464,7 +466,9 @@ class Comparison {
         const bool holds = team_.Holds(formulas[i], &robot, &defined);
         ASSERT_EQ(holds, truths[i].holds) << formulas[i].name;
         ASSERT_EQ(defined, truths[i].defined) << formulas[i].name;
-        if (!holds) ASSERT_EQ(robot, static_cast<size_t>(truths[i].robot)) << formulas[i].name;
+        if (!holds) {
+          ASSERT_EQ(robot, static_cast<size_t>(truths[i].robot)) << formulas[i].name;
+        }
       }
     };
     compare(team_.invariants(), Core::Kind::kInvariant);
@@ -480,8 +484,9 @@ class Comparison {
       for (size_t i = 0; i < told.size(); ++i) {
         const auto& promise = team_.promises()[i];
         team_.machine().SetMemory(const_cast<Word*>(state.data()));
-        if (promise.when != 0)
+        if (promise.when != 0) {
           EXPECT_EQ(team_.machine().RunFormula(promise.when, r), told[i].first.holds) << promise.name;
+        }
         team_.machine().SetMemory(later.data(), state.data());
         EXPECT_EQ(team_.machine().RunFormula(promise.always, r), told[i].second.holds) << promise.name;
         EXPECT_EQ(team_.LastWasDefined(), told[i].second.defined) << promise.name;
@@ -627,7 +632,9 @@ TEST(BuildAgreement, ProgramsWithEverythingDoWhatTheMachineDoes) {
                                      semantics::Op::kGridFloat, semantics::Op::kGridPos};
   for (int op = 0; op <= static_cast<int>(semantics::Op::kMark); ++op) {
     const auto one = static_cast<semantics::Op>(op);
-    if (!none.contains(one)) EXPECT_TRUE(tally.covered.contains(one)) << "no program has operation " << op;
+    if (!none.contains(one)) {
+      EXPECT_TRUE(tally.covered.contains(one)) << "no program has operation " << op;
+    }
   }
   for (const auto fault :
        {program::Fault::kIndex, program::Fault::kDivision, program::Fault::kRoot, program::Fault::kRemove,

@@ -107,6 +107,29 @@ def read(trace, name):
             check(last is not None and last.info.width == 22 and -1 not in last.data, "the last map")
 
 
+def javascript(rondo, folder):
+    """The reference reader of browsers agrees with itself and with that of Python, and notices a flipped bit."""
+    modules = pathlib.Path("build/node").resolve()
+    if not (modules / "node_modules").is_dir():
+        print("skipped: @mcap/core (./dev setup)")
+        return
+
+    def read(trace):
+        return subprocess.run(["node", "tests/e2e/read_mcap.mjs", modules, trace], capture_output=True, text=True)
+
+    for name in ("mapping", "shapeform"):
+        trace = folder / f"{name}1.mcap"
+        done = read(trace)
+        with open(trace, "rb") as file:
+            summary = make_reader(file).get_summary()
+        counts = {summary.channels[c].topic: n for c, n in summary.statistics.channel_message_counts.items() if n}
+        check(done.returncode == 0 and json.loads(done.stdout) == counts, f"{name}: {done.stdout[:300]}{done.stderr}")
+    bad = bytearray((folder / "mapping1.mcap").read_bytes())
+    bad[len(bad) // 2] ^= 4
+    (folder / "flipped.mcap").write_bytes(bad)
+    check(read(folder / "flipped.mcap").returncode == 1, "@mcap/core reads a flipped bit")
+
+
 def damaged(rondo, folder):
     good = (folder / "shapeform1.mcap").read_bytes()
     bad = folder / "bad.mcap"
@@ -242,6 +265,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         examples(rondo, folder)
+        javascript(rondo, folder)
         damaged(rondo, folder)
         refused(rondo, folder)
         interrupted(rondo, folder)

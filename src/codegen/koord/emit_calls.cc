@@ -80,8 +80,10 @@ void Emitter::Define(size_t f) {
     Line(fmt::format("return {};", GenAs(given->second->body, function.result).text));
   } else {
     Statements(function.def->body);
-    Line(fmt::format("r.Undefined(Fault::kReturn, {});", PlaceOf(function.span)));
-    Line("return {};");
+    if (function.def->body.empty() || function.def->body.back().kind != koord::StmtKind::kReturn) {
+      Line(fmt::format("r.Undefined(Fault::kReturn, {});", PlaceOf(function.span)));
+      Line("return {};");
+    }
   }
   if (uses_view_) with_view_.insert(f);
   functions_.push_back({fmt::format("{} {}(Step& r, {}{}Place at)", result, FunctionName(function),

@@ -43,7 +43,8 @@ std::string Emitter::Initial(size_t v, ExprId value) {
   while (filled && types_.Is(type, TypeKind::kArray)) type = model_.types[type].parts[0];
   const Code code = GenAs(value, type);
   const std::string target = fmt::format("to.{}()", Accessor(v, 0));
-  Line(filled ? fmt::format("Fill({}, {});", target, Typed(code)) : fmt::format("{} = {};", target, code.text));
+  Line(filled ? fmt::format("Fill({}, {});", target, Typed(code))
+              : fmt::format("{} = {};", target, code.text));
   return std::move(out_);
 }
 
@@ -120,8 +121,7 @@ void Emitter::Execute(const Stmt& stmt) {
     case StmtKind::kCall:
       return Method(stmt);
     case StmtKind::kStream:
-      for (const ExprId e : stmt.operands) Log(e);
-      return;
+      return Log(stmt);
     case StmtKind::kStop:
       return Line("return to.Stop();");
     case StmtKind::kBreak:
@@ -150,11 +150,18 @@ void Emitter::Execute(const Stmt& stmt) {
   }
 }
 
-void Emitter::Log(ExprId e) {
-  if (types_.Is(model_.TypeOf(e), TypeKind::kOpaque))
-    Fail("what an external type holds cannot be written as text");
-  const Code value = Gen(e);
-  Line(fmt::format("r.Say(to.effect.said, {}, {});", Typed(value), PlaceOf(exprs_[e].span)));
+void Emitter::Log(const Stmt& stmt) {
+  std::vector<Code> values;
+  for (const ExprId e : stmt.operands) {
+    const Code value = Gen(e);
+    if (types_.Is(model_.TypeOf(e), TypeKind::kOpaque))
+      Fail("what an external type holds cannot be written as text");
+    values.push_back({Typed(value), value.effects});
+  }
+  const auto say = [&](const std::vector<std::string>& t) {
+    return fmt::format("r.Say(to.effect.said, {}, {})", PlaceOf(stmt.span), fmt::join(t, ", "));
+  };
+  Line(Ordered(values, say, true).text + ";");
 }
 
 void Emitter::If(const Stmt& stmt) {
@@ -253,8 +260,8 @@ void Emitter::LoopIn(const Stmt& stmt) {
   const std::string body = Nested(stmt.body, first);
   Line(fmt::format("const auto{} {} = {};", copy ? "" : "&", items, list.text));
   Line(fmt::format(
-      "for (int64_t {0}_at = 0, {0}_end = Len({0}); {0}_at < {0}_end; r.Next({0}_at, {0}_end, {1})) {{", items,
-      Here()));
+      "for (int64_t {0}_at = 0, {0}_end = Len({0}); {0}_at < {0}_end; r.Next({0}_at, {0}_end, {1})) {{",
+      items, Here()));
   out_ += body;
   Line("}");
 }
@@ -325,9 +332,10 @@ std::string Emitter::Accessor(size_t v, size_t levels, bool apart) {
     key = "new_" + name;
     text = fmt::format("auto& {}() noexcept {{ return New(cell::{}, {}); }}", key, name, kept);
   } else if (levels == 0) {
-    text = depth == 0 ? fmt::format("auto& {}() noexcept {{ return Keep(cell::{}, {}, {}); }}", name, name, kept, now)
-                      : fmt::format("auto& {}() noexcept {{ return KeepAll<{}>(cell::{}, {}, {}); }}", name, depth,
-                                    name, kept, now);
+    text = depth == 0 ? fmt::format("auto& {}() noexcept {{ return Keep(cell::{}, {}, {}); }}", name, name,
+                                    kept, now)
+                      : fmt::format("auto& {}() noexcept {{ return KeepAll<{}>(cell::{}, {}, {}); }}", name,
+                                    depth, name, kept, now);
   } else {
     key = depth == levels ? name + "_item" : fmt::format("{}_part{}", name, levels);
     text = fmt::format(

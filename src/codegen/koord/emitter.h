@@ -131,7 +131,7 @@ class Emitter {
   void LoopWhile(const Stmt& stmt);
   std::string Nested(const std::vector<Stmt>& body, const std::string& first = {});
   void Method(const Stmt& stmt);
-  void Log(ExprId e);
+  void Log(const Stmt& stmt);
   bool Writes(const std::vector<Stmt>& body, const koord::Ref& variable) const;
   koord::Ref RootOf(ExprId part) const;
   void Line(const std::string& text);

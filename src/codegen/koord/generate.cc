@@ -35,7 +35,8 @@ class Assembly {
     const std::string events = Bodies();
     const std::string formulas = Formulas();
     for (const std::string& type : types_.Unused())
-      diagnostics_.Report(diag::Kind::kKoordNotBuildable, {}, fmt::format("the program has no type `{}`", type))
+      diagnostics_
+          .Report(diag::Kind::kKoordNotBuildable, {}, fmt::format("the program has no type `{}`", type))
           .Help(fmt::format("types with a capacity: {}", fmt::join(types_.capable(), ", ")));
     std::vector<std::string> methods;
     for (const Emitter::External& external : emitter_.external_functions()) {
@@ -130,8 +131,11 @@ void Assembly::Variables() {
     const std::string type = types_.Of(v.type, v.span);
     if (v.kind == VariableKind::kParam) {
       const auto words = team_.params().subspan(place.at, place.width);
-      params_ += fmt::format("inline const {} {} = {};\n", type, CppName(v.name),
-                             types_.Literal(v.type, words, v.span));
+      const bool constant = type.find("List<") == std::string::npos &&
+                            type.find("Opaque<") == std::string::npos && type != "Str" &&
+                            !types_.Is(v.type, lang::TypeKind::kRecord);
+      params_ += fmt::format("inline {} {} {} = {};\n", constant ? "constexpr" : "const", type,
+                             CppName(v.name), types_.Literal(v.type, words, v.span));
       continue;
     }
     const std::string part = v.kind == VariableKind::kLocal      ? "local."
@@ -280,7 +284,7 @@ std::string Assembly::Header() {
     const std::string count = table_names_.substr(at, space - at);
     const std::string name = table_names_.substr(space + 10, end - space - 10);  // behind " Program::"
     const char* type = name == "kInits"                            ? "InitBody"
-                       : name == "kBegins"                          ? "BeginBody"
+                       : name == "kBegins"                         ? "BeginBody"
                        : name == "kPromises"                       ? "Promise"
                        : name == "kEvents" || name == "kFallbacks" ? "EventCode<Program>"
                                                                    : "FormulaCode<Program>";

@@ -23,10 +23,11 @@ constexpr auto kWords = std::to_array<std::string_view>(
      "try", "typedef", "typeid", "typename", "union", "unsigned", "using", "virtual", "void", "volatile",
      "wchar_t", "while", "xor", "xor_eq",
      // types
-     "Answer", "Calls", "Changes", "Choice", "Contains", "Effect", "Event", "Fill", "In", "InRect", "IsRobot", "Len",
-     "Less", "LessEqual", "Lines", "List", "Local", "NamesOf", "Opaque", "Out", "Place", "Pos", "Program",
-     "Same", "Shared", "Splat", "Step", "Str", "Text", "To", "Two", "View", "World", "Writing", "cell",
-     "events", "formulas", "functions", "int64_t", "kRobots", "param", "rondo", "size_t", "std", "uint64_t",
+     "Answer", "Calls", "Changes", "Choice", "Contains", "Effect", "Event", "Fill", "In", "InRect", "IsRobot",
+     "Len", "Less", "LessEqual", "Lines", "List", "Local", "NamesOf", "Opaque", "Out", "Place", "Pos",
+     "Program", "Same", "Shared", "Splat", "Step", "Str", "Text", "To", "Two", "View", "World", "Writing",
+     "cell", "events", "formulas", "functions", "int64_t", "kRobots", "param", "rondo", "size_t", "std",
+     "uint64_t",
      // what is passed around
      "at", "old", "pid", "r", "stopped", "to", "v"});
 

@@ -36,7 +36,8 @@ class Looker {
 
  private:
   void Look(const Stmt& stmt) {
-    const bool loops = stmt.kind == StmtKind::kForIn || stmt.kind == StmtKind::kForRange || stmt.kind == StmtKind::kWhile;
+    const bool loops =
+        stmt.kind == StmtKind::kForIn || stmt.kind == StmtKind::kForRange || stmt.kind == StmtKind::kWhile;
     const bool outermost = loops && loop_ == 0;
     if (outermost) loop_ = ++now_;
     const koord::Builtin method = MethodOf(stmt);

@@ -61,12 +61,7 @@ void Compiler::Execute(const Stmt& stmt) {
     case StmtKind::kCall:
       return Method(stmt);
     case StmtKind::kStream:
-      for (const ExprId e : stmt.operands) {
-        Gen(e);
-        logged_.push_back(model_.TypeOf(e));
-        Emit(Op::kLog, logged_.size() - 1, Width(model_.TypeOf(e)));
-      }
-      return;
+      return Log(stmt);
     case StmtKind::kStop:
       Emit(Op::kStop);
       returns_.push_back(Emit(Op::kJump));
@@ -104,6 +99,23 @@ void Compiler::Execute(const Stmt& stmt) {
       locks_ = true;
       return Body(stmt.body);
   }
+}
+
+// One line for each statement: of several values, their texts one behind the other.
+void Compiler::Log(const Stmt& stmt) {
+  const bool one = stmt.operands.size() == 1;
+  const TypeId type = one ? model_.TypeOf(stmt.operands[0]) : model_.types.string();
+  for (const ExprId e : stmt.operands) {
+    Gen(e);
+    if (one) break;
+    if (!model_.types.Is(model_.TypeOf(e), TypeKind::kString)) {
+      logged_.push_back(model_.TypeOf(e));
+      Emit(Op::kShow, logged_.size() - 1, Width(model_.TypeOf(e)));
+    }
+    if (e != stmt.operands.front()) Emit(Op::kConcatenate);
+  }
+  logged_.push_back(type);
+  Emit(Op::kLog, logged_.size() - 1, Width(type));
 }
 
 void Compiler::If(const Stmt& stmt) {

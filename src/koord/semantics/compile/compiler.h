@@ -112,6 +112,7 @@ class Compiler {
   // compile_statements.cc
   void Body(const std::vector<Stmt>& body);
   void Execute(const Stmt& stmt);
+  void Log(const Stmt& stmt);
   void If(const Stmt& stmt);
   void LoopIn(const Stmt& stmt);
   void LoopRange(const Stmt& stmt);
