@@ -75,7 +75,6 @@ class Emitter {
   // emit_expressions.cc
   Code Gen(ExprId e);
   Code GenAs(ExprId e, TypeId type);
-  Code Named(ExprId id, const lang::Expr& e);
   Code Literal(const lang::Expr& e);
   Code Unary(const lang::Expr& e);
   Code Binary(ExprId id, const lang::Expr& e);
@@ -83,6 +82,18 @@ class Emitter {
   Code Arithmetic(ExprId id, const lang::Expr& e);
   Code Membership(const lang::Expr& e);
   Code Sequence(const lang::Expr& e, TypeId type);
+  Code Convert(Code code, TypeId from, TypeId to) const;
+  std::string Here() const { return PlaceOf(span_); }
+  /// Puts operands together, evaluated from left to right.
+  using Join = std::function<std::string(const std::vector<std::string>&)>;
+  Code Ordered(const std::vector<Code>& parts, const Join& join, bool effects);
+  static std::string Operand(const Code& code) { return code.compound ? "(" + code.text + ")" : code.text; }
+  static std::string Typed(const Code& code) { return code.number ? code.text + "_i" : code.text; }
+  std::string Fresh(const std::string& name);
+  void Fail(const std::string& reason, const std::string& help = {});
+
+  // emit_variables.cc
+  Code Named(ExprId id, const lang::Expr& e);
   Code ReadVariable(size_t variable);
   Code ReadCell(size_t variable, const Code& robot, ExprId index);
   Code Index(ExprId id);
@@ -93,15 +104,6 @@ class Emitter {
     std::vector<ExprId> indices;  // the outer one first
   };
   std::optional<Element> ElementOf(ExprId target) const;
-  Code Convert(Code code, TypeId from, TypeId to) const;
-  std::string Here() const { return PlaceOf(span_); }
-  /// Puts operands together, evaluated from left to right.
-  using Join = std::function<std::string(const std::vector<std::string>&)>;
-  Code Ordered(const std::vector<Code>& parts, const Join& join, bool effects);
-  static std::string Operand(const Code& code) { return code.compound ? "(" + code.text + ")" : code.text; }
-  static std::string Typed(const Code& code) { return code.number ? code.text + "_i" : code.text; }
-  std::string Fresh(const std::string& name);
-  void Fail(const std::string& reason, const std::string& help = {});
 
   // emit_quantifiers.cc
   Code Quantifier(ExprId id, const lang::Expr& e);

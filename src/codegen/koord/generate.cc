@@ -6,6 +6,7 @@
 
 #include "codegen/koord/emitter.h"
 #include "codegen/koord/names.h"
+#include "codegen/koord/templates.h"
 
 namespace rondo::codegen {
 
@@ -63,7 +64,7 @@ class Assembly {
   std::string Visit(const std::string& now, size_t depth);
 
   std::string Bodies();
-  std::string Table(const std::string& name, const std::string& type, const std::vector<std::string>& rows);
+  void Table(const std::string& name, const std::string& type, const std::vector<std::string>& rows);
   std::string Formulas();
   std::string Formula(const std::string& prefix, size_t number, const std::string& name, koord::ExprId e);
   std::string Header();
@@ -79,7 +80,7 @@ class Assembly {
   Emitter emitter_;
   diag::Diagnostics& diagnostics_;
   std::string params_, shared_, local_, in_, out_, changes_, cells_, each_cell_, each_shared_, each_own_;
-  std::string events_, event_table_, tables_, table_names_, calls_;
+  std::string events_, tables_, declared_, calls_;
 };
 
 std::string Assembly::Struct(const std::string& name, VariableKind kind, const std::string& more) {
@@ -196,7 +197,7 @@ std::string Assembly::Bodies() {
                                name));
   }
   events_ = names;
-  tables_ += Table("Program::kEvents", "EventCode<Program>", rows);
+  Table("kEvents", "EventCode<Program>", rows);
   rows.clear();
   for (size_t i = 0; i < model_.inits.size(); ++i) {
     body(fmt::format("init_{}", i), model_.inits[i]->body, false);
@@ -212,25 +213,27 @@ std::string Assembly::Bodies() {
   };
   initial(team_.declared());
   initial(team_.derived());
-  tables_ += Table("Program::kBegins", "Program::BeginBody", begins);
-  tables_ += Table("Program::kInits", "Program::InitBody", rows);
+  Table("kBegins", "BeginBody", begins);
+  Table("kInits", "InitBody", rows);
   rows.clear();
   for (const koord::FallbackDef* def : model_.fallbacks) {
     const std::string name = fmt::format("fallback_{}", CppName(def->module));
     body(name, def->code.body, false);
     rows.push_back(fmt::format("{{{}, false, nullptr, events::{}}}", CppString(def->module), name));
   }
-  tables_ += Table("Program::kFallbacks", "EventCode<Program>", rows);
+  Table("kFallbacks", "EventCode<Program>", rows);
   return text;
 }
 
-std::string Assembly::Table(const std::string& name, const std::string& type,
-                            const std::vector<std::string>& rows) {
-  std::string text = fmt::format("const std::array<{}, {}> {}{{", type, rows.size(), name);
-  if (!rows.empty()) text += "{\n";
-  for (const std::string& row : rows) text += fmt::format("    {},\n", row);
-  table_names_ += fmt::format("{} {}\n", rows.size(), name);
-  return text + (rows.empty() ? "};\n" : "}};\n");
+// A table of the program. `type`: of its items, as the class `Program` calls it.
+void Assembly::Table(const std::string& name, const std::string& type, const std::vector<std::string>& rows) {
+  declared_ += fmt::format("  static const std::array<{}, {}> {};\n", type, rows.size(), name);
+  const bool own = type.find('<') == std::string::npos;
+  tables_ += fmt::format("const std::array<{}{}, {}> Program::{}{{", own ? "Program::" : "", type,
+                         rows.size(), name);
+  if (!rows.empty()) tables_ += "{\n";
+  for (const std::string& row : rows) tables_ += fmt::format("    {},\n", row);
+  tables_ += rows.empty() ? "};\n" : "}};\n";
 }
 
 std::string Assembly::Formula(const std::string& prefix, size_t number, const std::string& name,
@@ -254,7 +257,7 @@ std::string Assembly::Formulas() {
       rows.push_back(fmt::format("{{{}, {}, formulas::{}_{}}}", CppString(formulas[i].name),
                                  formulas[i].per_robot, prefix, i));
     }
-    tables_ += Table("Program::" + table, "FormulaCode<Program>", rows);
+    Table(table, "FormulaCode<Program>", rows);
   };
   list("kInvariants", "invariant", team_.invariants());
   list("kInitially", "initially", team_.initially());
@@ -272,125 +275,19 @@ std::string Assembly::Formulas() {
                                promises[i].p.valid() ? row("when") : "{\"\", true, nullptr}", row("always"),
                                promises[i].at_end));
   }
-  tables_ += Table("Program::kPromises", "Program::Promise", rows);
+  Table("kPromises", "Promise", rows);
   return text;
 }
 
 std::string Assembly::Header() {
-  std::string declared;
-  for (size_t at = 0; at < table_names_.size();) {
-    const size_t end = table_names_.find('\n', at);
-    const size_t space = table_names_.find(' ', at);
-    const std::string count = table_names_.substr(at, space - at);
-    const std::string name = table_names_.substr(space + 10, end - space - 10);  // behind " Program::"
-    const char* type = name == "kInits"                            ? "InitBody"
-                       : name == "kBegins"                         ? "BeginBody"
-                       : name == "kPromises"                       ? "Promise"
-                       : name == "kEvents" || name == "kFallbacks" ? "EventCode<Program>"
-                                                                   : "FormulaCode<Program>";
-    declared += fmt::format("  static const std::array<{}, {}> {};\n", type, count, name);
-    at = end + 1;
-  }
-  return fmt::format(
-      R"(// Made by `rondo build`. Changes are lost when it is made again.
-#pragma once
-
-#include <rondo/program/effects.h>
-
-namespace {name} {{
-
-using namespace rondo::program;
-
-inline constexpr int64_t kRobots = {robots};
-constexpr bool IsRobot(int64_t robot) {{ return 0 <= robot && robot < kRobots; }}
-constexpr int64_t operator""_i(unsigned long long number) {{ return static_cast<int64_t>(number); }}
-using Str = Text<{text}>;
-
-{types}namespace param {{
-
-{params}
-}}  // namespace param
-
-// What all robots read; the items of arrays of {robots} are written by the robot with that number.
-{shared}// What one robot has for itself, what its sensors read, and what its actuators are told.
-{local}{in}{out}enum class Event : uint8_t {{ {events} }};
-
-// What an event may write, by variable; of arrays with one item for each robot, the robot's own.
-struct Changes {{
-{changes}}};
-namespace cell {{
-enum : size_t {{
-{cells}}};
-}}  // namespace cell
-using Effect = BasicEffect<Event, cell::kCount, Changes>;
-
-// Answers the questions that the program asks. Each method is called in the round, and has to answer at once: with `kLater`, the
-// robot skips and asks again.
-class Calls {{
- public:
-  virtual ~Calls() = default;
-{calls}}};
-
-struct To;
-
-// Ties the program together, for the functions of `rondo/program/effects.h`.
-struct Program {{
-  using Shared = {name}::Shared;
-  using Local = {name}::Local;
-  using In = {name}::In;
-  using Out = {name}::Out;
-  using Event = {name}::Event;
-  using Changes = {name}::Changes;
-  using Effect = {name}::Effect;
-  using Calls = {name}::Calls;
-  using To = {name}::To;
-  using InitBody = void (*)(Step&, const View<Program>&, To&);
-  struct BeginBody {{
-    InitBody body;
-    bool per_robot;
-  }};
-  struct Promise {{
-    FormulaCode<Program> when;  ///< no function: always
-    FormulaCode<Program> always;
-    bool at_end;
-  }};
-  static constexpr size_t kRobots = {robots};
-  static constexpr uint64_t kDigest = {digest:#018x};
-  static constexpr size_t kStopped = cell::stopped;
-{tables}
-  // See `rondo/program/effects.h`.
-  static size_t Effects(const Self<Program>& self, Calls& calls, Choice* choice, std::span<Effect> effects) noexcept;
-  static void RunEvent(const Self<Program>& self, Event event, Calls& calls, Choice* choice, Effect& effect) noexcept;
-  static bool Begin(Shared& shared, std::span<Local> local, std::span<const In> in, std::span<Out> out, Calls& calls,
-                    Effect& effect) noexcept;
-  static void Init(const Self<Program>& self, Calls& calls, Choice* choice, Effect& effect) noexcept;
-  static void FallBack(const Self<Program>& self, size_t fallback, Calls& calls, Effect& effect) noexcept;
-
-  // Calls `cell(number, value in changes, value in the state)` for each variable and item that robot `robot` may write.
-  template <typename ChangesType, typename Cell>
-  static void EachCell([[maybe_unused]] int64_t robot, ChangesType& changes, [[maybe_unused]] Shared& shared, Local& local,
-                       [[maybe_unused]] Out& out, const Cell& cell) {{
-{each}  }}
-  // Calls `visit(value)` for each variable, and each item of arrays, that all robots may write, and that one robot has of its own.
-  template <typename Visit>
-  static void EachShared([[maybe_unused]] Shared& shared, const Visit& visit) {{
-    (void)visit;
-{each_shared}  }}
-  template <typename Visit>
-  static void EachOwn([[maybe_unused]] size_t robot, [[maybe_unused]] Shared& shared, Local& local, [[maybe_unused]] In& in,
-                      [[maybe_unused]] Out& out, const Visit& visit) {{
-{each_own}    visit(local.stopped);
-  }}
-}};
-
-}}  // namespace {name}
-)",
-      fmt::arg("name", name_), fmt::arg("digest", digest_), fmt::arg("robots", team_.robots()),
-      fmt::arg("text", types_.TextCapacity()), fmt::arg("types", types_.definitions()),
-      fmt::arg("params", params_), fmt::arg("shared", shared_), fmt::arg("local", local_),
-      fmt::arg("in", in_), fmt::arg("out", out_), fmt::arg("events", events_), fmt::arg("changes", changes_),
-      fmt::arg("cells", cells_), fmt::arg("calls", calls_), fmt::arg("tables", declared),
-      fmt::arg("each", each_cell_), fmt::arg("each_shared", each_shared_), fmt::arg("each_own", each_own_));
+  return fmt::format(fmt::runtime(kHeader), fmt::arg("name", name_), fmt::arg("digest", digest_),
+                     fmt::arg("robots", team_.robots()), fmt::arg("text", types_.TextCapacity()),
+                     fmt::arg("types", types_.definitions()), fmt::arg("params", params_),
+                     fmt::arg("shared", shared_), fmt::arg("local", local_), fmt::arg("in", in_),
+                     fmt::arg("out", out_), fmt::arg("events", events_), fmt::arg("changes", changes_),
+                     fmt::arg("cells", cells_), fmt::arg("calls", calls_), fmt::arg("tables", declared_),
+                     fmt::arg("each", each_cell_), fmt::arg("each_shared", each_shared_),
+                     fmt::arg("each_own", each_own_));
 }
 
 std::string Assembly::Source(const std::string& events, const std::string& formulas) {
@@ -406,44 +303,8 @@ std::string Assembly::Source(const std::string& events, const std::string& formu
   };
   for (const auto& [_, text] : emitter_.accessors()) accessors += "  " + text + "\n";
   return fmt::format(
-      R"(// Made by `rondo build`. Changes are lost when it is made again.
-#include "{name}.h"
-
-namespace {name} {{
-
-// Gives events what they may write.
-struct To : Writing<Program> {{
-{accessors}}};
-
-{functions}// The events: `r` takes faults, `v` is what the robot sees, `to` is where it writes. Comments
-// give lines of the program, and braces places in it: the line, the column, and how many bytes.
-namespace events {{
-namespace {{
-
-{events}}}  // namespace
-}}  // namespace events
-
-{formulas}{tables}
-size_t Program::Effects(const Self<Program>& self, Calls& calls, Choice* choice, std::span<Effect> effects) noexcept {{
-  return rondo::program::Effects<Program>(self, calls, choice, effects);
-}}
-void Program::RunEvent(const Self<Program>& self, Event event, Calls& calls, Choice* choice, Effect& effect) noexcept {{
-  rondo::program::RunEvent<Program>(self, static_cast<size_t>(event), calls, choice, effect);
-}}
-bool Program::Begin(Shared& shared, std::span<Local> local, std::span<const In> in, std::span<Out> out, Calls& calls,
-                    Effect& effect) noexcept {{
-  return rondo::program::Begin<Program>(shared, local, in, out, calls, effect);
-}}
-void Program::Init(const Self<Program>& self, Calls& calls, Choice* choice, Effect& effect) noexcept {{
-  rondo::program::Init<Program>(self, calls, choice, effect);
-}}
-void Program::FallBack(const Self<Program>& self, size_t fallback, Calls& calls, Effect& effect) noexcept {{
-  rondo::program::FallBack<Program>(self, fallback, calls, effect);
-}}
-
-}}  // namespace {name}
-)",
-      fmt::arg("name", name_), fmt::arg("accessors", accessors),
+      fmt::runtime(kSource), fmt::arg("name", name_), fmt::arg("include", "#include"),
+      fmt::arg("accessors", accessors),
       fmt::arg(
           "functions",
           section(
@@ -473,25 +334,8 @@ std::string Assembly::Core() const {
         external.name, parameters, external.result, number++, arguments);
     names += fmt::format("{}{}", names.empty() ? "" : ", ", CppString(external.of));
   }
-  return fmt::format(
-      R"(// Made by `rondo build`. Changes are lost when it is made again.
-#include <rondo/program/core.h>
-
-#include "{0}.h"
-
-namespace {0} {{
-
-struct Asking final : Calls {{
-  explicit Asking(CoreHost& h) : host(h) {{}}
-  CoreHost& host;
-  static std::vector<std::string> Questions() {{ return {{{2}}}; }}
-{1}}};
-
-std::unique_ptr<Core> MakeCore() {{ return std::make_unique<CoreOf<Program, Asking>>(); }}
-
-}}  // namespace {0}
-)",
-      name_, asking, names);
+  return fmt::format(fmt::runtime(kCore), fmt::arg("name", name_), fmt::arg("include", "#include"),
+                     fmt::arg("methods", asking), fmt::arg("questions", names));
 }
 
 }  // namespace
