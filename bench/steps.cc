@@ -7,10 +7,10 @@
 #include <new>
 #include <random>
 
-#include "delivery/delivery.h"
+#include "koord/delivery.h"
+#include "koord/mapping.h"
 #include "koord/native/state_bytes.h"
 #include "koord/semantics/program_transition.h"
-#include "mapping/mapping.h"
 #include "program/codec.h"
 #include "runs/build.h"
 
@@ -20,6 +20,10 @@ void* operator new(size_t size) {
   void* memory = std::malloc(size);
   if (memory == nullptr) std::abort();
   return memory;
+}
+void* operator new(size_t size, const std::nothrow_t&) noexcept {
+  ++allocations;
+  return std::malloc(size);
 }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, size_t) noexcept { std::free(memory); }
@@ -35,7 +39,7 @@ constexpr size_t kRobots = 8;
 
 const List<Pos, 16> kPath{{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {3, 2, 0}, {4, 5, 0}};
 
-struct DeliveryAnswers final : delivery::Calls {
+struct DeliveryAnswers final : koord::delivery::Calls {
   Answer Motion_planner(int64_t, const Pos&, List<Pos, 16>& path) noexcept override {
     path = kPath;
     return Answer::kValue;
@@ -51,7 +55,7 @@ struct DeliveryAnswers final : delivery::Calls {
   }
 };
 
-struct MappingAnswers final : mapping::Calls {
+struct MappingAnswers final : koord::mapping::Calls {
   using Map = rondo::program::Opaque<16>;
   Answer pickFrontierPos(int64_t, const Map&, const Pos& from, Pos& to) noexcept override {
     to = from;
@@ -253,6 +257,6 @@ bool Measure(const char* name, const char* tasks, bool check) {
 
 int main(int argc, char** argv) {
   const bool check = argc > 1 && std::string_view(argv[1]) == "--check";
-  const bool good = Measure<delivery::Program, DeliveryAnswers>("delivery", "all_tasks", check);
-  return Measure<mapping::Program, MappingAnswers>("mapping", "", check) && good ? 0 : 1;
+  const bool good = Measure<koord::delivery::Program, DeliveryAnswers>("delivery", "all_tasks", check);
+  return Measure<koord::mapping::Program, MappingAnswers>("mapping", "", check) && good ? 0 : 1;
 }

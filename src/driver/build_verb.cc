@@ -51,7 +51,7 @@ void ReadCapacity(const std::string& text, codegen::Capacities& capacities) {
 // Nothing if all is written, else why not.
 std::string Write(const std::filesystem::path& folder, const runs::BuiltProject& project,
                   std::vector<std::string>& written) {
-  const auto made = base::MakeFolders(folder);
+  const auto made = base::MakeFolders(folder / "koord");
   if (!made.ok()) return fmt::format("cannot make `{}`: {}", folder.string(), made.error().message);
   const auto write = [&](const std::string& name, const std::string& text) -> std::string {
     const auto done = base::WriteFileAtomically(folder / name, text);
@@ -91,12 +91,14 @@ ExitStatus Run(const Options& options) {
                         {"written", written},
                         {"status", ExitStatus::kEstablished},
                         {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}};
-    if (options.print) json["files"] = project->files;
+    for (const auto& [name, text] : project->files) {
+      if (options.print) json["files"][name] = text;
+    }
     PrintJson(json);
     return ExitStatus::kEstablished;
   }
   if (options.print) {
-    Print(project->files.at(project->name + ".h") + "\n" + project->files.at(project->name + ".cc"));
+    Print(project->files[0].text + "\n" + project->files[1].text);
   } else {
     std::string text = fmt::format("{} for {}: {}\n", project->name, base::Counted(project->robots, "robot"),
                                    options.folder);
@@ -117,7 +119,8 @@ void AddBuildVerb(CLI::App& app, ExitStatus& status) {
           "FILE", options->file,
           "the Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet that it is made for")
       .Required();
-  verb.Option("--robots", options->robots, "for so many robots; with `--fleet`, its parameters count still");
+  verb.Option("--robots", options->robots, "for so many robots; with `--fleet`, its parameters count still")
+      .Between(uint64_t{1}, uint64_t{1000});
   verb.Option("--fleet", options->fleet, "the fleet, if it is not beside the program");
   verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
   verb.Option(

@@ -20,6 +20,8 @@ struct SearchOptions {
   std::optional<uint32_t> depth;  ///< at most so many transitions from an initial state; none: no limit
   uint64_t states = 100'000'000;  ///< the search gives up once it has visited so many
   size_t memory = SIZE_MAX;       ///< ... or before it takes more than so many bytes
+  std::function<size_t()> beside =
+      {};  ///< returns how many bytes the system takes itself, asked now and then
   /// Hash compaction: a hash for each state instead of its words; a state may be missed.
   bool compact = false;
   bool deadlocks = false;  ///< whether a state that `Deadlocked` accepts ends the search
@@ -103,6 +105,7 @@ class Searcher {
         return Seen::kStop;
       }
     }
+    if (options_.beside && (result_.transitions & 0xff) == 0) beside_ = options_.beside();
     if (visited_.bytes_next() + OtherBytes() > options_.memory) {
       large_ = true;
       return Seen::kStop;
@@ -171,7 +174,8 @@ class Searcher {
   }
 
   size_t OtherBytes() const {
-    return parent_.size() * sizeof(uint32_t) + (frontier_.capacity() + next_.capacity()) * sizeof(Word);
+    return beside_ + parent_.size() * sizeof(uint32_t) +
+           (frontier_.capacity() + next_.capacity()) * sizeof(Word);
   }
 
   // The numbers of the path are known; its states are found again from the initial ones.
@@ -208,6 +212,7 @@ class Searcher {
   uint32_t level_end_ = 0;
   uint32_t bad_ = kNone;
   uint64_t polled_ = 0;
+  size_t beside_ = 0;
   bool full_ = false;
   bool large_ = false;
   bool stopped_ = false;  // in the middle of a state

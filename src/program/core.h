@@ -93,10 +93,6 @@ Answer AskCore(CoreHost& host, size_t function, int64_t robot, Result& result,
 template <typename P, typename Asking>
 class CoreOf final : public Core {
  public:
-  CoreOf() : effects_(P::kRobots) {
-    for (auto& e : effects_) e.resize(P::kEvents.size() + 1);
-  }
-
   size_t robots() const override { return P::kRobots; }
   size_t events() const override { return P::kEvents.size(); }
   uint64_t digest() const override { return P::kDigest; }
@@ -146,13 +142,13 @@ class CoreOf final : public Core {
     return good;
   }
   std::vector<size_t> Merge(const std::vector<Wish>& wishes) override {
-    std::vector<std::vector<typename P::Effect>> wanted;
     std::vector<Turn<P>> turns;
     for (const Wish& wish : wishes) {
-      std::vector<typename P::Effect>& effects = wanted.emplace_back();
-      for (const size_t a : wish.alternatives) effects.push_back(effects_[wish.robot][a]);
+      Alternatives& wanted = wanted_[wish.robot];
+      for (size_t k = 0; k < wish.alternatives.size(); ++k)
+        wanted[k] = effects_[wish.robot][wish.alternatives[k]];
+      turns.push_back({wish.robot, std::span(wanted).first(wish.alternatives.size())});
     }
-    for (size_t t = 0; t < wishes.size(); ++t) turns.push_back({wishes[t].robot, wanted[t]});
     std::vector<size_t> did(turns.size());
     program::Merge<P>(turns, now_.shared, now_.local, now_.out, did);
     return did;
@@ -238,8 +234,10 @@ class CoreOf final : public Core {
     return told;
   }
 
+  using Alternatives = std::array<typename P::Effect, P::kEvents.size() + 1>;  // one for `init` at least
+
   State now_, old_;
-  std::vector<std::vector<typename P::Effect>> effects_;  // by robot
+  std::array<Alternatives, P::kRobots> effects_, wanted_;  // by robot
 };
 
 /// Counts up when anything above changes.

@@ -12,7 +12,7 @@
 namespace rondo::program {
 
 /// Holds what one enabled event of one robot does, in terms of the values at the start of the round.
-template <typename EventType, size_t kCells, typename Changes>
+template <typename EventType, size_t kCells, typename Changes, typename Said>
 struct BasicEffect {
   EventType event{};
   bool urgent = false;
@@ -23,7 +23,7 @@ struct BasicEffect {
   std::bitset<kCells> wrote;   ///< the variables, and the items of arrays, that it writes
   std::bitset<kCells> apart;   ///< those of them that the state never had
   Changes changes;             ///< their new values
-  Lines<> said;                ///< what it writes to streams
+  Said said;                   ///< what it writes to streams
 };
 
 /// Holds the state of the whole team.

@@ -86,7 +86,7 @@ void ShowPlain(Pen& pen, const T& value) noexcept {
 }
 
 /// Holds what an event writes to streams: up to `kLines` lines that have up to `kBytes` bytes together.
-template <uint32_t kLines = 32, uint32_t kBytes = 2048>
+template <uint32_t kLines, uint32_t kBytes>
 class Lines {
  public:
   void Clear() noexcept { count_ = 0; }

@@ -20,24 +20,24 @@ using koord::semantics::TeamOptions;
 constexpr const char* kCMake =
     R"(# Made by `rondo build`. What you add belongs into a CMakeLists.txt of yours, which adds this folder.
 cmake_minimum_required(VERSION 3.25)
-project({0} LANGUAGES CXX)
+project(koord_{0} LANGUAGES CXX)
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 find_package(rondo {1} REQUIRED)
-add_library({0} {0}.cc)
-target_include_directories({0} PUBLIC ${{CMAKE_CURRENT_SOURCE_DIR}})
-target_link_libraries({0} PUBLIC rondo::program)
-set_target_properties({0} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+add_library(koord_{0} koord/{0}.cc)
+target_include_directories(koord_{0} PUBLIC ${{CMAKE_CURRENT_SOURCE_DIR}})
+target_link_libraries(koord_{0} PUBLIC rondo::program)
+set_target_properties(koord_{0} PROPERTIES POSITION_INDEPENDENT_CODE ON)
 # For `rondo run --core`, `launch --core` and `campaign --core`.
-add_library({0}_core MODULE {0}_core.cc)
-target_link_libraries({0}_core PRIVATE {0})
+add_library(koord_{0}_core MODULE koord/{0}_core.cc)
+target_link_libraries(koord_{0}_core PRIVATE koord_{0})
 )";
 
 // What `rondo run --core` looks for.
 constexpr const char* kExports = R"(
 extern "C" int rondo_core_version() {{ return rondo::program::kCoreVersion; }}
-extern "C" rondo::program::Core* rondo_make_core() {{ return {0}::MakeCore().release(); }}
+extern "C" rondo::program::Core* rondo_make_core() {{ return koord::{0}::MakeCore().release(); }}
 )";
 
 std::string Answers(const codegen::GeneratedProgram& program) {
@@ -48,7 +48,7 @@ std::string Answers(const codegen::GeneratedProgram& program) {
         call);
   return fmt::format(
       "// What the program asks. This file is yours: `rondo build` makes it once, and leaves it as it is then.\n"
-      "#pragma once\n\n#include \"{0}.h\"\n\nnamespace {0} {{\n\nclass Answers : public Calls {{\n public:\n{1}}};\n\n}}  // namespace "
+      "#pragma once\n\n#include \"koord/{0}.h\"\n\nnamespace koord::{0} {{\n\nclass Answers : public Calls {{\n public:\n{1}}};\n\n}}  // namespace "
       "{0}\n",
       program.name, methods);
 }
@@ -107,11 +107,12 @@ std::optional<BuiltProject> Build(const BuildRequest& request, workspace::Sessio
   BuiltProject project;
   project.name = program.name;
   project.robots = source->team->robots();
-  project.files[program.name + ".h"] = program.header;
-  project.files[program.name + ".cc"] = program.source;
-  project.files[program.name + "_core.cc"] = program.core + fmt::format(kExports, program.name);
-  project.files["CMakeLists.txt"] = fmt::format(kCMake, program.name, base::Version());
-  if (!program.calls.empty()) project.to_fill_in["answers.h"] = Answers(program);
+  const std::string stem_of_files = "koord/" + program.name;
+  project.files = {{stem_of_files + ".h", program.header},
+                   {stem_of_files + ".cc", program.source},
+                   {stem_of_files + "_core.cc", program.core + fmt::format(kExports, program.name)},
+                   {"CMakeLists.txt", fmt::format(kCMake, program.name, base::Version())}};
+  if (!program.calls.empty()) project.to_fill_in = {{"answers.h", Answers(program)}};
   return project;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,12 +31,16 @@ struct BuildSource {
 /// Loads a program for as many robots as the request or the fleet says, with its parameters. Returns nothing after a report.
 std::optional<BuildSource> LoadToBuild(const BuildRequest& request, workspace::Session& session);
 
-/// Is a project: its files by their names, and which of them belong to who uses it, and are not made again.
+/// Is a project: its files, the header and the source of the program first, and which belong to who uses it, and are not made again.
 struct BuiltProject {
   std::string name;
   size_t robots = 0;
-  std::map<std::string, std::string> files;
-  std::map<std::string, std::string> to_fill_in;
+  struct File {
+    std::string name, text;
+  };
+  std::vector<File>
+      files;  ///< in the order in which they are to be written: nothing can be made of some of them
+  std::vector<File> to_fill_in;
 };
 
 /// Returns the project of a program: the program, a class that answers its questions for the user to fill in, and what CMake needs

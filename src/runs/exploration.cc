@@ -291,6 +291,8 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
     if (options.rounds) search.depth = *options.rounds * system.phases();
     search.states = options.states;
     search.memory = options.memory;
+    // Lists and texts, which lie in blocks of powers of two.
+    search.beside = [&] { return 2 * sizeof(koord::semantics::Word) * team->heap().words_in_use(); };
     search.compact = options.compact;
     search.deadlocks = options.deadlocks;
     search.progress = options.progress;
@@ -343,9 +345,10 @@ std::vector<Explored> ExploreSizes(
       if (e.search.ending == Ending::kStates && !last) unfinished.push_back(n);
     }
     for (const size_t n : open) {
-      if (over && found.contains(n) && found[n].search.ending == Ending::kStates && !found[n].broken &&
-          turn < options.states)
-        found[n].left = !options.stop.cancelled();
+      const auto e = found.find(n);
+      if (!over || last || e == found.end() || e->second.search.ending != Ending::kStates) continue;
+      if (options.stop.cancelled()) e->second.search.ending = Ending::kStopped;
+      e->second.left = !options.stop.cancelled();
     }
     open = std::move(unfinished);
   }

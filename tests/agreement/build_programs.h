@@ -358,6 +358,79 @@ assume initially: len(Motion.path) == 1 and paths[pid] == Motion.path
 invariant apart: forall i, j in ID: i != j implies dist(Motion[i].psn, Motion[j].psn) > 1
 invariant told: forall i in ID: Motion[i].path == paths[i] and Arm[i].grip >= 0
 )",
+    // Names that C++, or what is made, has already.
+    R"(
+def adt Task:
+    int Members
+    bool new
+def adt Self:
+    int new_
+    Task Core
+using Motion:
+    actuators:
+        int target
+param string names[2] = ["a\\b", "c ??/ d"]
+param int NULL = 3
+def fun shorter(List<int> l, Task t) -> int:
+    l.append(3)
+    t.Members = len(l)
+    return t.Members - -1
+allread:
+    int x[N_sys] = 0
+    int new_x[N_sys] = 0
+allwrite:
+    int shared = 0
+    int x_item[2]
+    int kCount = 0
+local:
+    int Motion_target = 0
+    int effect = 0
+    int me = 0
+    int out = 0
+    Task task
+    Self self
+    List<int> double
+    int int64_t = 0
+    int r = 0
+    string log
+Task:
+    pre: x[pid] < 3 and x[pid] != - -4
+    eff:
+        int i_2 = 100
+        int i_end = 2
+        int items_at = 7
+        int most = 4
+        int v = 0
+        for i = 0, i_end:
+            v += i_2
+        for i = 0, i_end:
+            v += i_2 + i
+        for q in double:
+            v += items_at
+        while v < 900 within 9:
+            v += most
+        x[pid] = v + 10
+        new_x[pid] = new_x[pid] + -(-1)
+        x_item[0] = shorter(double, task)
+        log = names[1] + "\\" + names[0]
+event_Task:
+    pre: r < NULL
+    eff:
+        Motion.target = 3
+        Motion_target = 4
+        effect = effect + 1
+        me = effect
+        out = me
+        shared = out
+        kCount = shared
+        task = Task(1, true)
+        self = Self(2, task)
+        self.Core.Members = self.new_
+        int64_t = 3
+        r = r + 1
+        double.append(r)
+invariant Task: forall i in ID: Motion_target[i] <= 4 and x[i] >= 0
+)",
 };
 
 }  // namespace rondo::koord

@@ -19,11 +19,10 @@ results = {"passed": 0, "failed": 0}
 
 MAIN = """#include <cstdio>
 #include <rondo/program/codec.h>
-#include "lineform.h"
+#include "koord/lineform.h"
 
 int main() {{
-  lineform::Calls answers;
-  for (size_t k = 0; k < lineform::kRobots; ++k) (void)k;
+  koord::lineform::Calls answers;
 {snippet}
   return 0;
 }}
@@ -53,7 +52,7 @@ def project(folder, prefix, name, *options):
     must(prefix / "bin/rondo", "build", EXAMPLES / name, "-o", made, *options)
     must("cmake", "-S", made, "-B", made / "build", f"-DCMAKE_PREFIX_PATH={prefix}")
     must("cmake", "--build", made / "build")
-    return made / "build" / f"lib{name}_core.so"
+    return made / "build" / f"libkoord_{name}_core.so"
 
 
 def campaigns(folder, prefix):
@@ -68,7 +67,7 @@ def campaigns(folder, prefix):
         check(f"campaign {name}", seen[0] == seen[1] and seen[0]["rounds"] > 1000, seen)
         wrong = run(rondo, "campaign", EXAMPLES / name, "--core", core, "--robots", robots + 1, robots + 1, cwd=folder)
         check(f"campaign {name} of another size", wrong.returncode == 1 and f"made for {robots} robots" in wrong.stderr, wrong.stderr)
-    other = run(rondo, "campaign", EXAMPLES / "delivery", "--core", folder / "mutex/build/libmutex_core.so", "--robots", 3, 3, cwd=folder)
+    other = run(rondo, "campaign", EXAMPLES / "delivery", "--core", folder / "mutex/build/libkoord_mutex_core.so", "--robots", 3, 3, cwd=folder)
     check("a library of another program", other.returncode == 1 and "made of another program" in other.stderr, other.stderr)
     alien = run(rondo, "campaign", EXAMPLES / "mutex", "--core", BUILD / "adapters/libbattery.so", cwd=folder)
     check("a library of something else", alien.returncode == 1 and "no program that `rondo build` made" in alien.stderr, alien.stderr)
@@ -81,14 +80,14 @@ def documented(folder, prefix):
     text = (ROOT / "docs/build.md").read_text()
     block = next(b for b in re.findall(r"```cpp\n(.*?)```", text, re.DOTALL) if "Begin(" in b)
     (made / "main.cc").write_text(MAIN.format(snippet="\n".join("  " + line for line in block.splitlines())))
-    flags = ["-std=c++20", "-O2", "-Wall", "-Wextra", "-Werror", "-ffp-contract=off", f"-I{prefix}/include", f"-I{prefix}/include/rondo"]
-    must("c++", *flags, made / "main.cc", made / "lineform.cc", "-o", made / "team")
+    flags = ["-std=c++20", "-O2", "-Wall", "-Wextra", "-Werror", "-ffp-contract=off", f"-I{prefix}/include", f"-I{prefix}/include/rondo", f"-I{made}"]
+    must("c++", *flags, made / "main.cc", made / "koord/lineform.cc", "-o", made / "team")
     natively = must(made / "team")
     check("a team in one process", re.fullmatch(r"(-?[\d.]+ ){18}\n", natively) is not None, natively)
     if shutil.which("aarch64-linux-gnu-g++") is None or shutil.which("qemu-aarch64") is None:
         print("skipped: another processor (g++-aarch64-linux-gnu, qemu-user)")
         return
-    must("aarch64-linux-gnu-g++", *flags, "-static", made / "main.cc", made / "lineform.cc", "-o", made / "team64")
+    must("aarch64-linux-gnu-g++", *flags, "-static", made / "main.cc", made / "koord/lineform.cc", "-o", made / "team64")
     check("another processor", must("qemu-aarch64", made / "team64") == natively, "it says something else")
 
 

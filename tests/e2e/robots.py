@@ -523,7 +523,7 @@ def cores(folder):
     headers = RONDO.parent.parent / "include"
     library = made / "core.so"
     done = subprocess.run(["c++", "-std=c++20", "-O1", "-shared", "-fPIC", "-ffp-contract=off", f"-I{headers}", f"-I{headers}/rondo",
-                           made / "lineform.cc", made / "lineform_core.cc", "-o", library], capture_output=True, text=True)
+                           f"-I{made}", made / "koord/lineform.cc", made / "koord/lineform_core.cc", "-o", library], capture_output=True, text=True)
     check("cores: compiled", done.returncode == 0, done.stderr)
     status, report = launch(LINEFORM, "--fleet", TURTLES, "--duration", 5, "--core", f"bot1={library}", "--core", f"bot3={library}",
                             "--logs", folder / "logs")

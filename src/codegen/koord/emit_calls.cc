@@ -72,7 +72,9 @@ void Emitter::Define(size_t f) {
   std::string parameters;
   for (size_t i = 0; i < bindings.size(); ++i) {
     const std::string name = Bind(bindings[i]);
-    parameters += ParameterText(types_.Of(function.parameters[i], function.span), name) + ", ";
+    const std::string type = types_.Of(function.parameters[i], function.span);
+    const bool written = !function.external() && Writes(function.def->body, {RefKind::kBinding, bindings[i]});
+    parameters += (written ? fmt::format("{} {}", type, name) : ParameterText(type, name)) + ", ";
   }
   const std::string result = types_.Of(function.result, function.span);
   Line("if (r.Skips(at)) return {};");

@@ -43,7 +43,9 @@ Emitter::Emitter(const koord::semantics::Team& team, const diag::SourceSet& sour
       sources_(sources),
       types_(types),
       diagnostics_(diagnostics),
-      files_(model_.program->Files()) {}
+      files_(model_.program->Files()) {
+  NameVariables();
+}
 
 std::string Emitter::PlaceOf(diag::Span span) const {
   if (!span.file.valid()) return "{}";
@@ -59,8 +61,9 @@ void Emitter::Fail(const std::string& reason, const std::string& help) {
 }
 
 std::string Emitter::Fresh(const std::string& name) {
-  const int count = ++taken_[name];
-  return count == 1 ? name : fmt::format("{}_{}", name, count);
+  std::string fresh = name;
+  for (int k = 2; !taken_.insert(fresh).second; ++k) fresh = fmt::format("{}_{}", name, k);
+  return fresh;
 }
 
 Code Emitter::Ordered(const std::vector<Code>& parts, const Join& join, bool effects) {
@@ -111,7 +114,11 @@ Code Emitter::Sequence(const lang::Expr& e, TypeId type) {
     return {fmt::format("{}{{{}}}", name, items), effects};
   }
   if (e.args.empty()) return {name + "{}", false};
-  const bool fits = e.args.size() <= types_.CapacityOf(type).value_or(0);
+  const uint32_t most = types_.CapacityOf(type).value_or(0);
+  const bool fits = e.args.size() <= most;
+  if (!fits && most > 0)
+    Fail(fmt::format("{} items where there is room for {}", e.args.size(), most),
+         fmt::format("`--capacity '{}={}'`", model_.types.Name(type), e.args.size()));
   return {fmt::format("r.Make<{}>({{{}}}, {})", name, items, Here()), effects || !fits};
 }
 
@@ -205,11 +212,12 @@ Code Emitter::Unary(const lang::Expr& e) {
   const Code operand = Gen(e.args[0]);
   span_ = e.span;
   if (e.text == "not") return {"!" + Operand(operand), operand.effects};
-  if (operand.number) return {operand.text == "0" ? "0" : "-" + operand.text, false, false, true};
+  if (operand.number && operand.text[0] != '-')
+    return {operand.text == "0" ? "0" : "-" + operand.text, false, false, true};
   if (exprs_[e.args[0]].kind == ExprKind::kFloat)
     return {operand.text == "0.0" ? "0.0" : "-" + operand.text, false, true};
   const bool ints = types_.Is(model_.TypeOf(e.args[0]), TypeKind::kInt);
-  return {fmt::format("r.Neg({}, {})", operand.text, Here()), operand.effects || ints};
+  return {fmt::format("r.Neg({}, {})", Typed(operand), Here()), operand.effects || ints};
 }
 
 Code Emitter::Binary(ExprId id, const lang::Expr& e) {

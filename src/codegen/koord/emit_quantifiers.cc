@@ -76,10 +76,10 @@ Code Emitter::Loop(const std::vector<Bound>& all, size_t i, ExprId body, bool fo
   if (bound.kind == DomainKind::kRobots) return over_numbers({"0"}, {"kRobots"}, Bind(bound.binding), "");
   if (types_.Is(type, TypeKind::kBool) || types_.Is(type, TypeKind::kEnum)) {
     const size_t count = types_.Is(type, TypeKind::kBool) ? 2 : model_.types[type].fields.size();
-    const std::string variable = Bind(bound.binding);
-    return over_numbers({"0"}, {fmt::format("{}", count)}, variable + "_number",
-                        fmt::format("const auto {0} = static_cast<{1}>({0}_number); ", variable,
-                                    types_.Of(type, model_.bindings[bound.binding].span)));
+    const std::string variable = Bind(bound.binding), number = Fresh(variable + "_number");
+    return over_numbers({"0"}, {fmt::format("{}", count)}, number,
+                        fmt::format("const auto {} = static_cast<{}>({}); ", variable,
+                                    types_.Of(type, model_.bindings[bound.binding].span), number));
   }
   const auto limits = koord::semantics::LimitsOf(model_, all, i, body, forall);
   const Code from = Limit(limits.lower, false);

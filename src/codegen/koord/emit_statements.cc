@@ -190,10 +190,10 @@ void Emitter::If(const Stmt& stmt) {
 void Emitter::LoopRange(const Stmt& stmt) {
   const Code from = Gen(stmt.value);
   const Code to = Gen(stmt.operands[0]);
-  const std::string index = Bind(model_.bound_by.at(&stmt)[0]);
+  const std::string index = Bind(model_.bound_by.at(&stmt)[0]), end = Fresh(index + "_end");
   const std::string body = Nested(stmt.body);
-  Line(fmt::format("for (int64_t {0} = {1}, {0}_end = {2}; {0} < {0}_end; r.Next({0}, {0}_end, {3})) {{",
-                   index, from.text, to.text, Here()));
+  Line(fmt::format("for (int64_t {0} = {1}, {4} = {2}; {0} < {4}; r.Next({0}, {4}, {3})) {{", index,
+                   from.text, to.text, Here(), end));
   out_ += body;
   Line("}");
 }
@@ -202,12 +202,12 @@ void Emitter::LoopRange(const Stmt& stmt) {
 void Emitter::LoopWhile(const Stmt& stmt) {
   const Code most = Gen(stmt.operands[0]);
   const Code condition = Gen(stmt.value);
-  const std::string count = Fresh("count");
+  const std::string count = Fresh("count"), end = Fresh("most");
   const std::string place = PlaceOf(stmt.span);
   const std::string body = Nested(
-      stmt.body, fmt::format("if ({0} >= {0}_most) {{ r.Fail(Fault::kLoop, {1}); break; }}", count, place));
-  Line(fmt::format("for (int64_t {0} = 0, {0}_most = {1}; {2} && !r.failed(); r.Next({0}, {0}_most, {3})) {{",
-                   count, most.text, Operand(condition), Here()));
+      stmt.body, fmt::format("if ({} >= {}) {{ r.Fail(Fault::kLoop, {}); break; }}", count, end, place));
+  Line(fmt::format("for (int64_t {0} = 0, {4} = {1}; {2} && !r.failed(); r.Next({0}, {4}, {3})) {{", count,
+                   most.text, Operand(condition), Here(), end));
   out_ += body;
   Line("}");
 }
@@ -243,7 +243,7 @@ void Emitter::LoopIn(const Stmt& stmt) {
   const TypeId element = model_.types[model_.TypeOf(stmt.value)].parts[0];
   const Code list = Gen(stmt.value);
   span_ = stmt.span;
-  const std::string items = Fresh("items");
+  const std::string items = Fresh("items"), at = Fresh("items_at"), end = Fresh("items_end");
   // The loop goes over the list as it was: over a copy where the body may change it, or nobody else keeps it.
   const Ref root = RootOf(stmt.value);
   const bool copy = root.kind == RefKind::kNone || Writes(stmt.body, root);
@@ -251,17 +251,16 @@ void Emitter::LoopIn(const Stmt& stmt) {
   std::string first;
   if (variables.size() == 1) {
     const std::string type = types_.Of(element, stmt.span);
-    first = fmt::format("const {}& {} = {}[{}_at];", type, Bind(variables[0]), items, items);
+    first = fmt::format("const {}& {} = {}[{}];", type, Bind(variables[0]), items, at);
   } else {
     for (size_t i = 0; i < variables.size(); ++i)
-      first += fmt::format("{}const auto& {} = {}[{}_at].{};", i == 0 ? "" : " ", Bind(variables[i]), items,
-                           items, types_.Member(element, i));
+      first += fmt::format("{}const auto& {} = {}[{}].{};", i == 0 ? "" : " ", Bind(variables[i]), items, at,
+                           types_.Member(element, i));
   }
   const std::string body = Nested(stmt.body, first);
   Line(fmt::format("const auto{} {} = {};", copy ? "" : "&", items, list.text));
-  Line(fmt::format(
-      "for (int64_t {0}_at = 0, {0}_end = Len({0}); {0}_at < {0}_end; r.Next({0}_at, {0}_end, {1})) {{",
-      items, Here()));
+  Line(fmt::format("for (int64_t {1} = 0, {2} = Len({0}); {1} < {2}; r.Next({1}, {2}, {3})) {{", items, at,
+                   end, Here()));
   out_ += body;
   Line("}");
 }
@@ -327,17 +326,19 @@ std::string Emitter::Accessor(size_t v, size_t levels, bool apart) {
                     PathOf(v);
   if (variable.kind == VariableKind::kAllread) now += "[pid]";
   const size_t depth = place.dimensions.size();
-  std::string text, key = name;
+  // A word in front of each, so that none is like another, or like a member of `Writing`.
+  std::string text, key;
   if (levels == 0 && depth == 0 && apart) {
     key = "new_" + name;
     text = fmt::format("auto& {}() noexcept {{ return New(cell::{}, {}); }}", key, name, kept);
   } else if (levels == 0) {
-    text = depth == 0 ? fmt::format("auto& {}() noexcept {{ return Keep(cell::{}, {}, {}); }}", name, name,
-                                    kept, now)
-                      : fmt::format("auto& {}() noexcept {{ return KeepAll<{}>(cell::{}, {}, {}); }}", name,
-                                    depth, name, kept, now);
+    key = "now_" + name;
+    text = depth == 0
+               ? fmt::format("auto& {}() noexcept {{ return Keep(cell::{}, {}, {}); }}", key, name, kept, now)
+               : fmt::format("auto& {}() noexcept {{ return KeepAll<{}>(cell::{}, {}, {}); }}", key, depth,
+                             name, kept, now);
   } else {
-    key = depth == levels ? name + "_item" : fmt::format("{}_part{}", name, levels);
+    key = depth == levels ? "item_" + name : fmt::format("part{}_{}", levels, name);
     text = fmt::format(
         "auto& {}(Step& r, int64_t index, Place at) noexcept {{ return KeepItem<{}, {}>(r, cell::{}, {}, {}, index, at); "
         "}}",

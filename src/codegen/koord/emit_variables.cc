@@ -14,10 +14,16 @@ using koord::VariableKind;
 using koord::semantics::Layout;
 using lang::ExprKind;
 
-std::string Emitter::NameOf(size_t variable) const {
-  std::string name = model_.variables[variable].name;
-  std::ranges::replace(name, '.', '_');
-  return CppName(name);
+// `Motion_psn` may be a variable as well as a port.
+void Emitter::NameVariables() {
+  std::set<std::string> taken;
+  for (const koord::Variable& v : model_.variables) {
+    std::string name = v.name;
+    std::ranges::replace(name, '.', '_');
+    name = CppName(name);
+    while (!taken.insert(name).second) name += "_2";
+    names_.push_back(name);
+  }
 }
 
 std::string Emitter::PathOf(size_t variable) const {

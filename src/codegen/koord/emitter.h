@@ -65,7 +65,7 @@ class Emitter {
   const std::map<std::string, std::string>& accessors() const { return accessors_; }
 
   /// Returns the C++ name of a variable: `x`, `Motion_psn`; and the path to it in its structure: `x`, `Motion.psn`.
-  std::string NameOf(size_t variable) const;
+  const std::string& NameOf(size_t variable) const { return names_[variable]; }
   std::string PathOf(size_t variable) const;
   /// Returns a place as an argument: `{31, 20, 7}`.
   std::string PlaceOf(diag::Span span) const;
@@ -93,6 +93,7 @@ class Emitter {
   void Fail(const std::string& reason, const std::string& help = {});
 
   // emit_variables.cc
+  void NameVariables();
   Code Named(ExprId id, const lang::Expr& e);
   Code ReadVariable(size_t variable);
   Code ReadCell(size_t variable, const Code& robot, ExprId index);
@@ -146,6 +147,7 @@ class Emitter {
   Types& types_;
   diag::Diagnostics& diagnostics_;
   std::vector<diag::FileId> files_;
+  std::vector<std::string> names_;  // by variable
   diag::Span span_;
   std::string out_;
   size_t depth_ = 1;
@@ -154,7 +156,7 @@ class Emitter {
   std::set<size_t> apart_;                    // variables that the body at hand only writes
   int function_ = -1;                         // whose body is being made
   std::map<uint32_t, std::string> bindings_;  // by binding: its name
-  std::map<std::string, int> taken_;          // names in the body at hand, and how often
+  std::set<std::string> taken_;               // names in the body at hand
   std::set<uint32_t> robots_;                 // bindings that are robots: those of quantifiers and folds
   std::set<size_t> defined_;                  // functions
   std::set<size_t> with_view_;                // functions that read the state, or ask external ones

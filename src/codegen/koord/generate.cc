@@ -15,6 +15,7 @@ using koord::VariableKind;
 using koord::semantics::EventCode;
 using koord::semantics::FormulaCode;
 using koord::semantics::Layout;
+using lang::TypeKind;
 
 namespace {
 
@@ -132,9 +133,8 @@ void Assembly::Variables() {
     const std::string type = types_.Of(v.type, v.span);
     if (v.kind == VariableKind::kParam) {
       const auto words = team_.params().subspan(place.at, place.width);
-      const bool constant = type.find("List<") == std::string::npos &&
-                            type.find("Opaque<") == std::string::npos && type != "Str" &&
-                            !types_.Is(v.type, lang::TypeKind::kRecord);
+      const bool constant = types_.Is(v.type, TypeKind::kInt) || types_.Is(v.type, TypeKind::kFloat) ||
+                            types_.Is(v.type, TypeKind::kBool) || types_.Is(v.type, TypeKind::kEnum);
       params_ += fmt::format("inline {} {} {} = {};\n", constant ? "constexpr" : "const", type,
                              CppName(v.name), types_.Literal(v.type, words, v.span));
       continue;
@@ -189,11 +189,11 @@ std::string Assembly::Bodies() {
       emitter_.At(event.def->span);
       const std::string guard = emitter_.Formula(event.def->pre);
       text +=
-          fmt::format("{} {{\n{}}}\n\n", Signature(fmt::format("bool {}_guard(", name), guard, false), guard);
+          fmt::format("{} {{\n{}}}\n\n", Signature(fmt::format("bool guard_{}(", name), guard, false), guard);
     }
-    body(name, event.def->body, true);
-    rows.push_back(fmt::format("{{{}, {}, {}, events::{}}}", CppString(event.def->name), event.urgent,
-                               event.def->pre.valid() ? fmt::format("events::{}_guard", name) : "nullptr",
+    body("event_" + name, event.def->body, true);
+    rows.push_back(fmt::format("{{{}, {}, {}, events::event_{}}}", CppString(event.def->name), event.urgent,
+                               event.def->pre.valid() ? fmt::format("events::guard_{}", name) : "nullptr",
                                name));
   }
   events_ = names;
@@ -282,6 +282,8 @@ std::string Assembly::Formulas() {
 std::string Assembly::Header() {
   return fmt::format(fmt::runtime(kHeader), fmt::arg("name", name_), fmt::arg("digest", digest_),
                      fmt::arg("robots", team_.robots()), fmt::arg("text", types_.TextCapacity()),
+                     fmt::arg("said", types_.SaidCapacity()),
+                     fmt::arg("lines", std::max<uint32_t>(32, types_.SaidCapacity() / 32)),
                      fmt::arg("types", types_.definitions()), fmt::arg("params", params_),
                      fmt::arg("shared", shared_), fmt::arg("local", local_), fmt::arg("in", in_),
                      fmt::arg("out", out_), fmt::arg("events", events_), fmt::arg("changes", changes_),

@@ -22,19 +22,35 @@ constexpr auto kWords = std::to_array<std::string_view>(
      "static_assert", "static_cast", "struct", "switch", "template", "this", "thread_local", "throw", "true",
      "try", "typedef", "typeid", "typename", "union", "unsigned", "using", "virtual", "void", "volatile",
      "wchar_t", "while", "xor", "xor_eq",
-     // types
-     "Answer", "Calls", "Changes", "Choice", "Contains", "Effect", "Event", "Fill", "In", "InRect", "IsRobot",
-     "Len", "Less", "LessEqual", "Lines", "List", "Local", "NamesOf", "Opaque", "Out", "Place", "Pos",
-     "Program", "Same", "Shared", "Splat", "Step", "Str", "Text", "To", "Two", "View", "World", "Writing",
-     "cell", "events", "formulas", "functions", "int64_t", "kRobots", "param", "rondo", "size_t", "std",
-     "uint64_t",
+     // of `rondo/program`
+     "Answer", "Any", "AskCore", "BasicEffect", "Begin", "ByteReader", "ByteWriter", "Bytes", "Choice",
+     "Contains", "Core", "CoreEffect", "CoreHost", "CoreOf", "Describe", "Effects", "EventCode", "FallBack",
+     "Fault", "Fill", "First", "FormulaCode", "Holds", "HoldsFor", "InRect", "Init", "Len", "Less",
+     "LessEqual", "Lines", "List", "Members", "Merge", "NamesOf", "Opaque", "Pen", "Place", "Pos", "Record",
+     "RunEvent", "Same", "Self", "Show", "ShowFloat", "ShowPlain", "Splat", "Step", "Team", "Text", "Truth",
+     "Turn", "Two", "View", "Writing", "detail", "kCoreVersion", "kIsArray", "kIsList", "kMostSteps", "kZero",
+     "swap",
+     // of programs
+     "Asking", "Calls", "Changes", "Effect", "Event", "In", "IsRobot", "Local", "MakeCore", "Out", "Program",
+     "Shared", "Str", "To", "cell", "events", "formulas", "functions", "kCount", "kRobots", "koord", "param",
+     // of the standard library, macros among them
+     "assert", "errno", "int64_t", "linux", "major", "minor", "rondo", "size_t", "std", "stderr", "stdin",
+     "stdout", "uint8_t", "uint16_t", "uint64_t", "unix",
      // what is passed around
-     "at", "old", "pid", "r", "stopped", "to", "v"});
+     "at", "me", "old", "pid", "r", "result", "robot", "stopped", "to", "v"});
+
+// Macros are written so.
+bool IsShouted(std::string_view name) {
+  return name.size() > 2 &&
+         std::ranges::none_of(name, [](char c) { return std::islower(static_cast<unsigned char>(c)) != 0; });
+}
 
 }  // namespace
 
 std::string CppName(std::string_view name) {
-  const bool taken = std::ranges::find(kWords, name) != kWords.end();
+  // With the underscores that it ends with, so that no two names become one.
+  const std::string_view word = name.substr(0, name.find_last_not_of('_') + 1);
+  const bool taken = std::ranges::find(kWords, word) != kWords.end() || IsShouted(word);
   return std::string(name) + (taken ? "_" : "");
 }
 

@@ -8,7 +8,7 @@ const std::string_view kHeader =
 
 #include <rondo/program/effects.h>
 
-namespace {name} {{
+namespace koord::{name} {{
 
 using namespace rondo::program;
 
@@ -33,7 +33,7 @@ namespace cell {{
 enum : size_t {{
 {cells}}};
 }}  // namespace cell
-using Effect = BasicEffect<Event, cell::kCount, Changes>;
+using Effect = BasicEffect<Event, cell::kCount, Changes, Lines<{lines}, {said}>>;
 
 // Answers the questions that the program asks. Each method is called in the round, and has to answer at once: with `kLater`, the
 // robot skips and asks again.
@@ -46,15 +46,15 @@ struct To;
 
 // Ties the program together, for the functions of `rondo/program/effects.h`.
 struct Program {{
-  using Shared = {name}::Shared;
-  using Local = {name}::Local;
-  using In = {name}::In;
-  using Out = {name}::Out;
-  using Event = {name}::Event;
-  using Changes = {name}::Changes;
-  using Effect = {name}::Effect;
-  using Calls = {name}::Calls;
-  using To = {name}::To;
+  using Shared = ::koord::{name}::Shared;
+  using Local = ::koord::{name}::Local;
+  using In = ::koord::{name}::In;
+  using Out = ::koord::{name}::Out;
+  using Event = ::koord::{name}::Event;
+  using Changes = ::koord::{name}::Changes;
+  using Effect = ::koord::{name}::Effect;
+  using Calls = ::koord::{name}::Calls;
+  using To = ::koord::{name}::To;
   using InitBody = void (*)(Step&, const View<Program>&, To&);
   struct BeginBody {{
     InitBody body;
@@ -94,14 +94,14 @@ struct Program {{
   }}
 }};
 
-}}  // namespace {name}
+}}  // namespace koord::{name}
 )";
 
 const std::string_view kSource =
     R"(// Made by `rondo build`. Changes are lost when it is made again.
-{include} "{name}.h"
+{include} "koord/{name}.h"
 
-namespace {name} {{
+namespace koord::{name} {{
 
 // Gives events what they may write.
 struct To : Writing<Program> {{
@@ -133,16 +133,16 @@ void Program::FallBack(const Self<Program>& self, size_t fallback, Calls& calls,
   rondo::program::FallBack<Program>(self, fallback, calls, effect);
 }}
 
-}}  // namespace {name}
+}}  // namespace koord::{name}
 )";
 
 const std::string_view kCore =
     R"(// Made by `rondo build`. Changes are lost when it is made again.
 #include <rondo/program/core.h>
 
-{include} "{name}.h"
+{include} "koord/{name}.h"
 
-namespace {name} {{
+namespace koord::{name} {{
 
 struct Asking final : Calls {{
   explicit Asking(CoreHost& h) : host(h) {{}}
@@ -152,7 +152,7 @@ struct Asking final : Calls {{
 
 std::unique_ptr<Core> MakeCore() {{ return std::make_unique<CoreOf<Program, Asking>>(); }}
 
-}}  // namespace {name}
+}}  // namespace koord::{name}
 )";
 
 }  // namespace rondo::codegen

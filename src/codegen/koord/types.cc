@@ -14,6 +14,8 @@ using lang::TypeKind;
 namespace {
 
 constexpr uint32_t kTextBytes = 256;  // unless something else is said
+constexpr uint32_t kSaidBytes = 2048;
+constexpr double kLargest = 1 << 20;  // bytes of a value, which may be on the stack
 
 }  // namespace
 
@@ -38,10 +40,38 @@ uint32_t Types::TextCapacity() const {
   return own == capacities_.by_type.end() ? kTextBytes : own->second;
 }
 
+uint32_t Types::SaidCapacity() const {
+  const auto own = capacities_.by_type.find("stream");
+  return own == capacities_.by_type.end() ? kSaidBytes : own->second;
+}
+
+// Roughly: without what is between members.
+double Types::BytesOf(TypeId type, int level) const {
+  const lang::Type& t = types_[type];
+  if (level > 32) return 0;  // it contains itself
+  double bytes = 0;
+  switch (t.kind) {
+    case TypeKind::kRecord:
+    case TypeKind::kTuple:
+      for (const TypeId part : t.parts) bytes += BytesOf(part, level + 1);
+      return bytes;
+    case TypeKind::kList:
+      return 8 + CapacityOf(type).value_or(1) * BytesOf(t.parts[0], level + 1);
+    case TypeKind::kOpaque:
+      return 8 + CapacityOf(type).value_or(1) * 8.0;
+    case TypeKind::kArray:
+      return LengthOf(type).value_or(1) * BytesOf(t.parts[0], level + 1);
+    case TypeKind::kString:
+      return 8 + TextCapacity();
+    default:
+      return 8;
+  }
+}
+
 std::vector<std::string> Types::Unused() const {
   std::vector<std::string> unused;
   for (const auto& [name, _] : capacities_.by_type) {
-    if (!asked_.contains(name) && name != "string") unused.push_back(name);
+    if (!asked_.contains(name) && name != "string" && name != "stream") unused.push_back(name);
   }
   return unused;
 }
@@ -55,6 +85,10 @@ void Types::Refuse(TypeId type, diag::Span where, const std::string& what, const
 std::string Types::Of(TypeId type, diag::Span where) {
   const lang::Type& t = types_[type];
   const std::string name = types_.Name(type);
+  if (BytesOf(type) > kLargest)
+    Refuse(type, where,
+           fmt::format("a `{}` has room for {:.3g} MB, and 1 MB is the most", name, BytesOf(type) / kLargest),
+           "a smaller capacity: `--capacity TYPE=NUMBER`");
   switch (t.kind) {
     case TypeKind::kBool:
       return "bool";
@@ -123,9 +157,9 @@ std::string Types::Define(TypeId type, diag::Span where) {
       words += (words.empty() ? "" : ", ") + CppString(m);
     }
     definitions_ += fmt::format(
-        "enum class {0} : uint8_t {{ {1} }};\n"
+        "enum class {0} : {4} {{ {1} }};\n"
         "constexpr std::array<std::string_view, {3}> NamesOf({0}) {{ return {{{2}}}; }}\n\n",
-        cpp, members, words, t.fields.size());
+        cpp, members, words, t.fields.size(), t.fields.size() > 256 ? "uint16_t" : "uint8_t");
     defining_.erase(name);
     return cpp;
   }

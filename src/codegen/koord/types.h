@@ -43,12 +43,15 @@ class Types {
   std::optional<uint32_t> CapacityOf(TypeId list) const;
   /// Returns the bytes that texts have room for.
   uint32_t TextCapacity() const;
+  /// Returns the bytes that an event may write to streams.
+  uint32_t SaidCapacity() const;
   /// Returns the names of capacities that no type of the program has.
   std::vector<std::string> Unused() const;
   /// Returns the types of the program that have a capacity.
   const std::set<std::string>& capable() const { return asked_; }
 
  private:
+  double BytesOf(TypeId type, int level = 0) const;
   std::string Define(TypeId type, diag::Span where);
   void Refuse(TypeId type, diag::Span where, const std::string& what, const std::string& help);
 

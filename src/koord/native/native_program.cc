@@ -122,7 +122,12 @@ class NativeTeam final : public semantics::Native {
 
   void Find(std::span<const Word> state, size_t robot, std::vector<Effect>& effects) override {
     effects.clear();
-    if (!Load(state)) return;
+    if (!Load(state)) {
+      // A list of the state has no room, which nothing can go on with.
+      for (uint32_t e = 0; e < team_.events().size(); ++e)
+        effects.push_back(TooLong(e, team_.events()[e].def->span));
+      return;
+    }
     questions_.Begin();
     questions_.Again();
     const std::vector<CoreEffect> first = core_->Effects(robot, questions_);
@@ -148,7 +153,10 @@ class NativeTeam final : public semantics::Native {
 
   void FindInit(std::span<const Word> state, size_t robot, std::vector<Effect>& effects) override {
     effects.clear();
-    if (!Load(state)) return;
+    if (!Load(state)) {
+      effects.push_back(TooLong(0, team_.events().front().def->span));
+      return;
+    }
     questions_.Begin();
     do {
       questions_.Again();
@@ -165,6 +173,10 @@ class NativeTeam final : public semantics::Native {
   }
 
  private:
+  static Effect TooLong(uint32_t event, diag::Span where) {
+    return {event, false, false, Fault::kTooLong, where, false, {}, {}, {}, {}};
+  }
+
   bool Load(std::span<const Word> state) {
     Bytes bytes;
     bytes_.Encode(state, bytes);

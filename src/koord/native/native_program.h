@@ -18,7 +18,7 @@ uint64_t DigestOf(const semantics::Team& team, const diag::SourceSet& sources);
 /// Is a library with a program in C++. Stays loaded as long as the process lives.
 class Library {
  public:
-  /// Loads a library that the project of `rondo build` makes (`libNAME_core.so`).
+  /// Loads a library that the project of `rondo build` makes (`libkoord_NAME_core.so`).
   /// @error if there is none, or it is none, or one of another version.
   static base::Result<Library> Load(const std::string& path);
 
