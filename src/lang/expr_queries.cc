@@ -74,4 +74,17 @@ std::optional<RangeDomain> RangeOf(const ExprPool& pool, const Expr& quantifier)
   return own ? std::nullopt : std::optional(range);
 }
 
+std::string Unquoted(const std::string& literal) {
+  std::string result;
+  for (size_t i = 1; i + 1 < literal.size(); ++i) {
+    if (literal[i] != '\\' || i + 2 >= literal.size()) {
+      result += literal[i];
+      continue;
+    }
+    ++i;
+    result += literal[i] == 'n' ? '\n' : literal[i] == 't' ? '\t' : literal[i];
+  }
+  return result;
+}
+
 }  // namespace rondo::lang

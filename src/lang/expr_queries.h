@@ -24,4 +24,7 @@ struct RangeDomain {
 /// `exists c in int: from <= c and c < to and body`, as the parser makes it of `range`; nothing if it is another one.
 std::optional<RangeDomain> RangeOf(const ExprPool& pool, const Expr& quantifier);
 
+/// Returns what a string literal means: without its quotes, and with what `\\n` and the like stand for.
+std::string Unquoted(const std::string& literal);
+
 }  // namespace rondo::lang

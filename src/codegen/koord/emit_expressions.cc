@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "codegen/koord/emitter.h"
 #include "codegen/koord/names.h"
+#include "lang/expr_queries.h"
 
 namespace rondo::codegen {
 
@@ -17,23 +18,6 @@ using koord::VariableKind;
 using koord::semantics::Layout;
 using lang::ExprKind;
 using lang::TypeKind;
-
-namespace {
-
-std::string Unquoted(const std::string& text) {
-  std::string result;
-  for (size_t i = 1; i + 1 < text.size(); ++i) {
-    if (text[i] != '\\' || i + 2 >= text.size()) {
-      result += text[i];
-      continue;
-    }
-    ++i;
-    result += text[i] == 'n' ? '\n' : text[i] == 't' ? '\t' : text[i];
-  }
-  return result;
-}
-
-}  // namespace
 
 Emitter::Emitter(const koord::semantics::Team& team, const diag::SourceSet& sources, Types& types,
                  diag::Diagnostics& diagnostics)
@@ -133,7 +117,7 @@ Code Emitter::Literal(const lang::Expr& e) {
     case ExprKind::kBool:
       return {e.text == "true" || e.text == "True" ? "true" : "false"};
     default: {
-      const std::string text = Unquoted(e.text);
+      const std::string text = lang::Unquoted(e.text);
       if (text.size() > types_.TextCapacity())
         Fail(fmt::format("this text has more than {} bytes", types_.TextCapacity()),
              "`--capacity string=1024`");

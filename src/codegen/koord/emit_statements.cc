@@ -348,7 +348,7 @@ std::string Emitter::Accessor(size_t v, size_t levels, bool apart) {
   return key;
 }
 
-Code Emitter::TargetElement(const Element& element, ExprId target) {
+Code Emitter::TargetElement(const koord::semantics::Element& element, ExprId target) {
   const size_t levels = element.indices.size();
   const Code flat = FlatIndex(element.indices, team_.layout()[element.variable].dimensions);
   span_ = exprs_[target].span;
@@ -368,7 +368,7 @@ Code Emitter::Target(ExprId target) {
             inner.effects};
   }
   CHECK(e.kind == ExprKind::kIndex);
-  if (const auto element = ElementOf(target)) return TargetElement(*element, target);
+  if (const auto element = ElementOf(model_, team_.layout(), target)) return TargetElement(*element, target);
   const Code inner = Target(e.args[0]);
   const Code index = Gen(e.args[1]);
   span_ = e.span;

@@ -109,20 +109,6 @@ Code Emitter::ReadCell(size_t v, const Code& robot, ExprId index) {
   return {fmt::format("{}.{}", item(fmt::format("{}.{}", view_, part)), PathOf(v)), !sure};
 }
 
-std::optional<Emitter::Element> Emitter::ElementOf(ExprId target) const {
-  Element element{0, {}};
-  while (exprs_[target].kind == ExprKind::kIndex && model_.RefOf(target).kind == RefKind::kNone) {
-    element.indices.insert(element.indices.begin(), exprs_[target].args[1]);
-    target = exprs_[target].args[0];
-  }
-  const Ref root = model_.RefOf(target);
-  if (root.kind != RefKind::kVariable || model_.variables[root.index].kind == VariableKind::kAllread ||
-      element.indices.empty() || element.indices.size() > team_.layout()[root.index].dimensions.size())
-    return std::nullopt;
-  element.variable = root.index;
-  return element;
-}
-
 // Which item it is, among all of so many levels.
 Code Emitter::FlatIndex(const std::vector<ExprId>& indices, const std::vector<uint32_t>& dimensions) {
   Code flat;
@@ -145,7 +131,7 @@ Code Emitter::FlatIndex(const std::vector<ExprId>& indices, const std::vector<ui
 
 Code Emitter::Index(ExprId id) {
   const lang::Expr& e = exprs_[id];
-  if (const auto element = ElementOf(id)) {
+  if (const auto element = ElementOf(model_, team_.layout(), id)) {
     const Layout::Place& place = team_.layout()[element->variable];
     const size_t levels = element->indices.size();
     const Code flat = FlatIndex(element->indices, place.dimensions);

@@ -8,6 +8,7 @@
 
 #include "codegen/koord/types.h"
 #include "koord/semantics/compile/domains.h"
+#include "koord/semantics/compile/element.h"
 
 /// Turns checked expressions and statements into C++.
 namespace rondo::codegen {
@@ -99,12 +100,6 @@ class Emitter {
   Code ReadCell(size_t variable, const Code& robot, ExprId index);
   Code Index(ExprId id);
   Code FlatIndex(const std::vector<ExprId>& indices, const std::vector<uint32_t>& dimensions);
-  /// Represents `a[i][j]` of a variable of which each item is a cell.
-  struct Element {
-    size_t variable;
-    std::vector<ExprId> indices;  // the outer one first
-  };
-  std::optional<Element> ElementOf(ExprId target) const;
 
   // emit_quantifiers.cc
   Code Quantifier(ExprId id, const lang::Expr& e);
@@ -126,7 +121,7 @@ class Emitter {
   void Statements(const std::vector<Stmt>& body);
   void Assign(ExprId target, const Code& value);
   Code Target(ExprId target);
-  Code TargetElement(const Element& element, ExprId target);
+  Code TargetElement(const koord::semantics::Element& element, ExprId target);
   std::string Accessor(size_t variable, size_t levels, bool apart = false);
   void If(const Stmt& stmt);
   void LoopIn(const Stmt& stmt);

@@ -5,28 +5,12 @@
 #include "base/check.h"
 #include "expr/rational.h"
 #include "koord/semantics/compile/compiler.h"
+#include "lang/expr_queries.h"
 
 namespace rondo::koord::semantics {
 
 using lang::ExprKind;
 using lang::TypeKind;
-
-namespace {
-
-std::string Unquoted(const std::string& text) {
-  std::string result;
-  for (size_t i = 1; i + 1 < text.size(); ++i) {
-    if (text[i] != '\\' || i + 2 >= text.size()) {
-      result += text[i];
-      continue;
-    }
-    ++i;
-    result += text[i] == 'n' ? '\n' : text[i] == 't' ? '\t' : text[i];
-  }
-  return result;
-}
-
-}  // namespace
 
 // A list literal of ints may stand where a list of floats is needed.
 void Compiler::GenAs(ExprId id, TypeId type) {
@@ -78,7 +62,7 @@ void Compiler::Gen(ExprId id) {
       return Constant(FromFloat(number + 0.0));
     }
     case ExprKind::kString:
-      return Constant(heap_.InternText(Unquoted(e.text)));
+      return Constant(heap_.InternText(lang::Unquoted(e.text)));
     case ExprKind::kBool:
       return Constant(e.text == "true" || e.text == "True");
     case ExprKind::kPid:
@@ -213,20 +197,6 @@ void Compiler::ReadCell(size_t v) {
   Emit(Op::kCell, place.at, place.width);
 }
 
-std::optional<Compiler::Element> Compiler::ElementOf(ExprId target) const {
-  Element element{0, {}};
-  while (exprs_[target].kind == ExprKind::kIndex && model_.RefOf(target).kind == RefKind::kNone) {
-    element.indices.insert(element.indices.begin(), exprs_[target].args[1]);
-    target = exprs_[target].args[0];
-  }
-  const Ref root = model_.RefOf(target);
-  if (root.kind != RefKind::kVariable || model_.variables[root.index].kind == VariableKind::kAllread ||
-      element.indices.empty() || element.indices.size() > layout_[root.index].dimensions.size())
-    return std::nullopt;
-  element.variable = root.index;
-  return element;
-}
-
 void Compiler::FlatIndex(const Element& element) {
   const Layout::Place& place = layout_[element.variable];
   for (size_t i = 0; i < element.indices.size(); ++i) {
@@ -251,7 +221,7 @@ size_t Compiler::ShapeBehind(const Layout::Place& place, size_t indices) {
 void Compiler::Index(ExprId id) {
   const lang::Expr& e = exprs_[id];
   const TypeId base = model_.TypeOf(e.args[0]);
-  if (const auto element = ElementOf(id)) {
+  if (const auto element = ElementOf(model_, layout_, id)) {
     const Layout::Place& place = layout_[element->variable];
     const size_t depth = element->indices.size();
     const size_t words = ItemsBehind(place, depth) * place.width;

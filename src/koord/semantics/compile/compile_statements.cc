@@ -281,7 +281,7 @@ void Compiler::Assign(ExprId target) {
   }
   CHECK(e.kind == ExprKind::kIndex);
   // A cell of an array, or an array of cells, is written by itself.
-  if (const auto element = ElementOf(target)) {
+  if (const auto element = ElementOf(model_, layout_, target)) {
     const Layout::Place& place = layout_[element->variable];
     const size_t depth = element->indices.size();
     const size_t words = ItemsBehind(place, depth) * place.width;

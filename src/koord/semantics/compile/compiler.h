@@ -8,6 +8,7 @@
 
 #include "koord/check/model.h"
 #include "koord/semantics/compile/domains.h"
+#include "koord/semantics/compile/element.h"
 #include "koord/semantics/machine/code.h"
 #include "koord/semantics/machine/layout.h"
 
@@ -85,12 +86,6 @@ class Compiler {
   void ReadCell(size_t variable);
   void Index(ExprId id);
   void Slice(ExprId base, uint32_t field);
-  /// Represents `a[i][j]` of a variable that lies flat.
-  struct Element {
-    size_t variable;
-    std::vector<ExprId> indices;  // the outer one first
-  };
-  std::optional<Element> ElementOf(ExprId target) const;
   /// Pushes the number of the item, or of the array of items, among those of its kind.
   void FlatIndex(const Element& element);
   size_t ItemsBehind(const Layout::Place& place, size_t indices) const;
