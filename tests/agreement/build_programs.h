@@ -54,6 +54,7 @@ Points:
         q = -q + p
         q = q / a
         centre = pos(p.x, q.y) if ok else p
+        y[pid] = -f
         p.x = f
         q.z = p.x + q.y
         ok = p not in rect(q, p) or not (a in ID)
@@ -216,6 +217,7 @@ Choices:
         atomic:
             c[1] = any q in l
             item = any t in todo
+invariant limits: forall i in ID: exists k in int: 0 <= k and k <= 2 and len(l[i]) == k
 invariant modes: forall i in ID, b in bool, m in Mode: count[i] >= 0 or b or m == mode or mine[i] == m
 invariant lists: forall i in ID: forall k in range(len(l[i])): l[i][k] < 5
 invariant boxes: forall i in ID: box[i].k[0] <= box[i].k[1] or stopped[i]
@@ -295,6 +297,10 @@ Both:
             s = t
             return
         s = 0
+Last:
+    pre: n < 6
+    eff:
+        n = n + 1
 invariant small: s <= 4 and t <= 4
 invariant said: forall i in ID: word[i] != "stop" or n[i] > 2
 response back: up[pid] within 3 rounds not up[pid]
