@@ -54,7 +54,6 @@ Points:
         q = -q + p
         q = q / a
         centre = pos(p.x, q.y) if ok else p
-        y[pid] = -f
         p.x = f
         q.z = p.x + q.y
         ok = p not in rect(q, p) or not (a in ID)
@@ -64,6 +63,10 @@ Several:
         ok = (a / b) <= (b / a) and (f / g) == (g / f)
         x[pid] = x[a] + x[b] * x[a + 1]
         y[pid] = min(f / g, g / f) + max(sqrt(f), sqrt(g))
+Zero:
+    pre: f == 0
+    eff:
+        y[pid] = -f
 invariant range: forall i in ID: x[i] <= 10 and a[i] / b[i] >= 0
 invariant float: forall i in ID: f[i] == g[i] implies sqrt(f[i]) <= y[i]
 invariant near: forall i, j in ID: dist(p[i], p[j]) <= 4 or p[i] != q[j]
