@@ -25,12 +25,6 @@ class Choice {
   virtual uint64_t Pick(uint64_t possibilities) noexcept = 0;
 };
 
-/// Chooses what stands first.
-class First final : public Choice {
- public:
-  uint64_t Pick(uint64_t) noexcept override { return 0; }
-};
-
 /// Bounds the iterations of loops and calls of functions in one event, both together.
 inline constexpr uint64_t kMostSteps = 100'000'000;
 
@@ -224,11 +218,6 @@ class Step {
   }
 
   // Lists. What has no room is a fault.
-  template <typename ListType>
-  ListType Make(std::initializer_list<typename ListType::Item> items, Place at) noexcept {
-    if (items.size() > ListType::kCapacity) Fail(Fault::kTooLong, at);
-    return ListType(items);
-  }
   template <typename ListType, typename T>
   void Append(ListType& list, const T& item, Place at) noexcept {
     if (list.full()) return Fail(Fault::kTooLong, at);

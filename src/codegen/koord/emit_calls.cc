@@ -14,16 +14,6 @@ using koord::Ref;
 using koord::RefKind;
 using lang::TypeKind;
 
-namespace {
-
-std::string FunctionName(const Function& function) {
-  std::string name = function.name;
-  std::ranges::replace(name, '.', '_');
-  return CppName(name);
-}
-
-}  // namespace
-
 Code Emitter::Call(ExprId id, const lang::Expr& e) {
   const Ref ref = model_.RefOf(id);
   if (ref.kind == RefKind::kFunction) return CallFunction(e, ref.index);
@@ -48,7 +38,7 @@ Code Emitter::CallWith(size_t f, const std::vector<Code>& arguments) {
   return Ordered(
       arguments,
       [&](const std::vector<std::string>& t) {
-        std::string text = fmt::format("functions::{}(r, {}", FunctionName(model_.functions[f]),
+        std::string text = fmt::format("functions::{}(r, {}", CppName(model_.functions[f].name),
                                        view ? fmt::format("{}, ", view_) : "");
         for (const std::string& argument : t) text += argument + ", ";
         return text + place + ")";
@@ -88,7 +78,7 @@ void Emitter::Define(size_t f) {
     }
   }
   if (uses_view_) with_view_.insert(f);
-  functions_.push_back({fmt::format("{} {}(Step& r, {}{}Place at)", result, FunctionName(function),
+  functions_.push_back({fmt::format("{} {}(Step& r, {}{}Place at)", result, CppName(function.name),
                                     uses_view_ ? "const View<Program>& v, " : "", parameters),
                         "{\n" + out_ + "}"});
   std::tie(out_, depth_, taken_, span_, function_, view_, uses_view_) = outside;
@@ -96,7 +86,7 @@ void Emitter::Define(size_t f) {
 
 void Emitter::DefineExternal(size_t f) {
   const Function& function = model_.functions[f];
-  External external{function.name, FunctionName(function), {}, {}, types_.Of(function.result, function.span)};
+  External external{function.name, CppName(function.name), {}, {}, types_.Of(function.result, function.span)};
   std::string parameters, arguments;
   for (size_t i = 0; i < function.parameters.size(); ++i) {
     const bool named = i < function.parameter_names.size() && !function.parameter_names[i].empty();
@@ -133,15 +123,7 @@ Code Emitter::CallBuiltin(const lang::Expr& e, Builtin builtin, TypeId type) {
         },
         true);
   };
-  const auto braced = [&](const std::vector<Code>& parts) {
-    Code code{types_.Of(type, e.span) + "{"};
-    for (size_t i = 0; i < parts.size(); ++i) {
-      code.text += (i == 0 ? "" : ", ") + parts[i].text;
-      code.effects = code.effects || parts[i].effects;
-    }
-    code.text += "}";
-    return code;
-  };
+  const auto braced = [&](const std::vector<Code>& parts) { return Braced(types_.Of(type, e.span), parts); };
   switch (builtin) {
     case Builtin::kPos: {
       std::vector<Code> parts;

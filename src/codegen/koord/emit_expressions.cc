@@ -79,31 +79,28 @@ Code Emitter::GenAs(ExprId id, TypeId type) {
   return Convert(std::move(code), model_.TypeOf(id), type);
 }
 
-Code Emitter::Sequence(const lang::Expr& e, TypeId type) {
-  const TypeId element = model_.types[type].parts[0];
-  std::string items;
-  bool effects = false;
-  for (const ExprId item : e.args) {
-    const Code code = GenAs(item, element);
-    items += (items.empty() ? "" : ", ") + code.text;
-    effects = effects || code.effects;
+// A value made of parts, which braces evaluate from left to right.
+Code Emitter::Braced(const std::string& type, const std::vector<Code>& parts) {
+  Code code{type + "{"};
+  for (size_t i = 0; i < parts.size(); ++i) {
+    code.text += (i == 0 ? "" : ", ") + parts[i].text;
+    code.effects = code.effects || parts[i].effects;
   }
+  code.text += "}";
+  return code;
+}
+
+Code Emitter::Sequence(const lang::Expr& e, TypeId type) {
+  std::vector<Code> items;
+  for (const ExprId item : e.args) items.push_back(GenAs(item, model_.types[type].parts[0]));
   span_ = e.span;
   const std::string name = types_.Of(type, e.span);
-  if (types_.Is(type, TypeKind::kArray)) {
-    const uint32_t length = types_.LengthOf(type).value_or(0);
-    if (length != e.args.size()) {
-      Fail(fmt::format("{} items where {} belong", e.args.size(), length));
-    }
-    return {fmt::format("{}{{{}}}", name, items), effects};
-  }
-  if (e.args.empty()) return {name + "{}", false};
-  const uint32_t most = types_.CapacityOf(type).value_or(0);
-  const bool fits = e.args.size() <= most;
-  if (!fits && most > 0)
-    Fail(fmt::format("{} items where there is room for {}", e.args.size(), most),
+  // Arrays have as many items as their type says, which the checker sees to.
+  const auto most = types_.Is(type, TypeKind::kList) ? types_.CapacityOf(type) : std::nullopt;
+  if (most && e.args.size() > *most)
+    Fail(fmt::format("{} items where there is room for {}", e.args.size(), *most),
          fmt::format("`--capacity '{}={}'`", model_.types.Name(type), e.args.size()));
-  return {fmt::format("r.Make<{}>({{{}}}, {})", name, items, Here()), effects || !fits};
+  return Braced(name, items);
 }
 
 Code Emitter::Literal(const lang::Expr& e) {
@@ -153,14 +150,9 @@ Code Emitter::Gen(ExprId id) {
     case ExprKind::kList:
       return GenAs(id, model_.TypeOf(id));
     case ExprKind::kTuple: {
-      std::string items;
-      bool effects = false;
-      for (const ExprId item : e.args) {
-        const Code code = Gen(item);
-        items += (items.empty() ? "" : ", ") + code.text;
-        effects = effects || code.effects;
-      }
-      return {fmt::format("{}{{{}}}", types_.Of(model_.TypeOf(id), e.span), items), effects};
+      std::vector<Code> items;
+      for (const ExprId item : e.args) items.push_back(Gen(item));
+      return Braced(types_.Of(model_.TypeOf(id), e.span), items);
     }
     case ExprKind::kQuantifier:
       return Quantifier(id, e);

@@ -72,8 +72,10 @@ Code Emitter::Loop(const std::vector<Bound>& all, size_t i, ExprId body, bool fo
                         types_.Of(type, model_.bindings[bound.binding].span), variable, inner.text),
             true};
   }
-  if (bound.kind == DomainKind::kRobots) robots_.insert(bound.binding);
-  if (bound.kind == DomainKind::kRobots) return over_numbers({"0"}, {"kRobots"}, Bind(bound.binding), "");
+  if (bound.kind == DomainKind::kRobots) {
+    robots_.insert(bound.binding);
+    return over_numbers({"0"}, {"kRobots"}, Bind(bound.binding), "");
+  }
   if (types_.Is(type, TypeKind::kBool) || types_.Is(type, TypeKind::kEnum)) {
     const size_t count = types_.Is(type, TypeKind::kBool) ? 2 : model_.types[type].fields.size();
     const std::string variable = Bind(bound.binding), number = Fresh(variable + "_number");

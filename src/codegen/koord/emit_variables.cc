@@ -18,9 +18,7 @@ using lang::ExprKind;
 void Emitter::NameVariables() {
   std::set<std::string> taken;
   for (const koord::Variable& v : model_.variables) {
-    std::string name = v.name;
-    std::ranges::replace(name, '.', '_');
-    name = CppName(name);
+    std::string name = CppName(v.name);
     while (!taken.insert(name).second) name += "_2";
     names_.push_back(name);
   }

@@ -46,10 +46,6 @@ class Emitter {
   std::string Initial(size_t variable, ExprId value);
   /// Returns `return ...;` with the truth value of a formula. `old` is the state at the end of the program transition.
   std::string Formula(ExprId e);
-  /// Returns the C++ of a value of type `type`.
-  std::string Value(ExprId e, TypeId type) { return GenAs(e, type).text; }
-  /// Says what the next value stands for, for faults.
-  void At(diag::Span span) { span_ = span; }
 
   /// Returns the functions that were called so far, each behind those that it calls.
   const std::vector<FunctionText>& functions() const { return functions_; }
@@ -72,7 +68,8 @@ class Emitter {
   std::string PlaceOf(diag::Span span) const;
 
  private:
-  void Begin();
+  void Begin();  // emit_statements.cc
+
   // emit_expressions.cc
   Code Gen(ExprId e);
   Code GenAs(ExprId e, TypeId type);
@@ -84,6 +81,7 @@ class Emitter {
   Code Membership(const lang::Expr& e);
   Code Sequence(const lang::Expr& e, TypeId type);
   Code Convert(Code code, TypeId from, TypeId to) const;
+  static Code Braced(const std::string& type, const std::vector<Code>& parts);
   std::string Here() const { return PlaceOf(span_); }
   /// Puts operands together, evaluated from left to right.
   using Join = std::function<std::string(const std::vector<std::string>&)>;

@@ -186,7 +186,6 @@ std::string Assembly::Bodies() {
     const std::string name = CppName(event.def->name);
     names += (names.empty() ? "" : ", ") + name;
     if (event.def->pre.valid()) {
-      emitter_.At(event.def->span);
       const std::string guard = emitter_.Formula(event.def->pre);
       text +=
           fmt::format("{} {{\n{}}}\n\n", Signature(fmt::format("bool guard_{}(", name), guard, false), guard);

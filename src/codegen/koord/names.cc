@@ -48,10 +48,12 @@ bool IsShouted(std::string_view name) {
 }  // namespace
 
 std::string CppName(std::string_view name) {
+  std::string cpp(name);
+  std::ranges::replace(cpp, '.', '_');
   // With the underscores that it ends with, so that no two names become one.
-  const std::string_view word = name.substr(0, name.find_last_not_of('_') + 1);
+  const std::string_view word = std::string_view(cpp).substr(0, cpp.find_last_not_of('_') + 1);
   const bool taken = std::ranges::find(kWords, word) != kWords.end() || IsShouted(word);
-  return std::string(name) + (taken ? "_" : "");
+  return cpp + (taken ? "_" : "");
 }
 
 std::string CppStem(std::string_view name) {

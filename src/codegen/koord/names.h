@@ -6,7 +6,7 @@
 /// Names of programs as names of C++.
 namespace rondo::codegen {
 
-/// Returns the name as C++ may have it: with an underscore behind it if it is a word of the language or of the text that is made.
+/// Returns the name as C++ may have it: with underscores for dots, and with one behind it if it is a word of the language or of the text that is made.
 std::string CppName(std::string_view name);
 
 /// Returns a name for a namespace or a file: of letters, digits and underscores.

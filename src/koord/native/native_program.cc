@@ -15,11 +15,10 @@ using runtime::codec::Reader;
 using runtime::codec::Writer;
 using semantics::Effect;
 using semantics::Fault;
+using semantics::kMostWays;
 using semantics::Layout;
 
 namespace {
-
-constexpr size_t kMostWays = 100'000;  // as for the machine
 
 Fault FaultOf(program::Fault fault) {
   switch (fault) {
@@ -89,30 +88,13 @@ class Questions final : public program::CoreHost {
     node::EncodeValue(types, team_.heap(), function.result, back, writer);
     return Answer::kValue;
   }
-  uint64_t Pick(uint64_t possibilities) noexcept override {
-    if (met_ == picks_.size()) picks_.push_back({0, possibilities});
-    return picks_[met_++].pick;
-  }
+  uint64_t Pick(uint64_t possibilities) noexcept override { return choices.Pick(possibilities); }
 
-  // Go through the choices of one event: the first values at first, and later each of the others.
-  void Begin() { picks_.clear(); }
-  void Again() { met_ = 0; }
-  bool Next() {
-    while (!picks_.empty() && picks_.back().pick + 1 >= picks_.back().possibilities) picks_.pop_back();
-    if (picks_.empty()) return false;
-    ++picks_.back().pick;
-    return true;
-  }
-  bool chose() const { return !picks_.empty(); }
+  semantics::Choices choices;  // of the event that is running
 
  private:
-  struct Picked {
-    uint64_t pick, possibilities;
-  };
   semantics::Team& team_;
   std::vector<size_t> functions_;
-  std::vector<Picked> picks_;
-  size_t met_ = 0;
 };
 
 class NativeTeam final : public semantics::Native {
@@ -128,10 +110,10 @@ class NativeTeam final : public semantics::Native {
         effects.push_back(TooLong(e, team_.events()[e].def->span));
       return;
     }
-    questions_.Begin();
-    questions_.Again();
+    questions_.choices.Clear();
+    questions_.choices.Begin();
     const std::vector<CoreEffect> first = core_->Effects(robot, questions_);
-    if (!questions_.chose()) {
+    if (!questions_.choices.any()) {
       for (const CoreEffect& effect : first) effects.push_back(Told(effect, robot, state));
       return;
     }
@@ -140,14 +122,14 @@ class NativeTeam final : public semantics::Native {
         effects.push_back(Told(effect, robot, state));
         continue;
       }
-      questions_.Begin();
+      questions_.choices.Clear();
       size_t ways = 0;
       do {
-        questions_.Again();
+        questions_.choices.Begin();
         effects.push_back(Told(core_->RunEvent(robot, effect.event, questions_), robot, state));
         if (++ways == kMostWays && effects.back().fault == Fault::kNone)
           effects.back().fault = Fault::kTooMany;
-      } while (ways < kMostWays && questions_.Next());
+      } while (ways < kMostWays && questions_.choices.Next());
     }
   }
 
@@ -157,11 +139,11 @@ class NativeTeam final : public semantics::Native {
       effects.push_back(TooLong(0, team_.events().front().def->span));
       return;
     }
-    questions_.Begin();
+    questions_.choices.Clear();
     do {
-      questions_.Again();
+      questions_.choices.Begin();
       effects.push_back(Told(core_->Init(robot, questions_), robot, state));
-    } while (effects.size() < kMostWays && questions_.Next());
+    } while (effects.size() < kMostWays && questions_.choices.Next());
   }
 
   bool FallBack(std::span<Word> state, size_t robot) override {

@@ -4,12 +4,6 @@
 
 namespace rondo::koord::semantics {
 
-namespace {
-
-constexpr size_t kMostWays = 100'000;  // in which `any` lets one event of one robot end
-
-}  // namespace
-
 ProgramTransition::ProgramTransition(Team& team)
     : team_(team),
       effects_(team.robots()),
@@ -18,7 +12,7 @@ ProgramTransition::ProgramTransition(Team& team)
       lock_holder_(team.events().size() + 1, -1),
       acted_(team.robots()) {
   for (const EventCode& event : team.events()) any_urgent_ = any_urgent_ || event.urgent;
-  team.machine().SetChooser([this](uint64_t possibilities) { return Pick(possibilities); });
+  team.machine().SetChooser([this](uint64_t possibilities) { return choices_.Pick(possibilities); });
 }
 
 Effect& ProgramTransition::Next(size_t robot) {
@@ -32,36 +26,22 @@ Effect& ProgramTransition::Next(size_t robot) {
   return effect;
 }
 
-// `any` takes the first value at first, and later each of the others.
-uint64_t ProgramTransition::Pick(uint64_t possibilities) {
-  if (met_ == picks_.size()) picks_.push_back({0, possibilities});
-  return picks_[met_++].pick;
-}
-
-// The next sequence of choices; false behind the last one.
-bool ProgramTransition::NextChoices() {
-  while (!picks_.empty() && picks_.back().pick + 1 >= picks_.back().possibilities) picks_.pop_back();
-  if (picks_.empty()) return false;
-  ++picks_.back().pick;
-  return true;
-}
-
 // Once for each sequence of choices.
 template <typename Way>
 void ProgramTransition::Each(const Way& way) {
-  picks_.clear();
+  choices_.Clear();
   size_t ways = 0;
   do {
     Fault* fault = way();
     // More than anybody could look at: a fault, not fewer possibilities.
-    if (++ways == kMostWays && *fault == Fault::kNone && !picks_.empty()) *fault = Fault::kTooMany;
-  } while (ways < kMostWays && NextChoices());
+    if (++ways == kMostWays && *fault == Fault::kNone && choices_.any()) *fault = Fault::kTooMany;
+  } while (ways < kMostWays && choices_.Next());
 }
 
 // Rule SelectEvent and the statements of the event, on the robot's own copy.
 void ProgramTransition::Run(size_t robot, uint32_t event, uint32_t entry, Effect& effect) {
   Machine& machine = team_.machine();
-  met_ = 0;
+  choices_.Begin();
   effect.event = event;
   effect.fault = machine.Run(entry, robot, false) ? Fault::kNone : machine.fault();
   effect.fault_span = machine.fault_span();
@@ -171,7 +151,7 @@ void ProgramTransition::RunInits(size_t robot, Effect& effect) {
   effect.urgent = true;
   effect.locks = effect.idle = false;
   effect.fault = Fault::kNone;
-  met_ = 0;
+  choices_.Begin();
   bool stopped = false;
   std::vector<Machine::Write> undo;
   std::vector<Machine::Unit> units;

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "koord/semantics/choices.h"
 #include "koord/semantics/team.h"
 
 /// Lists what a team may do in the program transition of one round.
@@ -90,8 +91,6 @@ class ProgramTransition {
   void RunInits(size_t robot, Effect& effect);
   template <typename Way>
   void Each(const Way& way);
-  uint64_t Pick(uint64_t possibilities);
-  bool NextChoices();
   Effect& Next(size_t robot);
   bool Choose(size_t robot, const Visit& visit);
   bool MaySkip(size_t robot) const;
@@ -111,12 +110,7 @@ class ProgramTransition {
   Team& team_;
   bool init_ = false;
   std::vector<Word> memory_;
-  struct Picked {
-    uint64_t pick;
-    uint64_t possibilities;
-  };
-  std::vector<Picked> picks_;  // by `any`, in the order in which the event that is running meets them
-  size_t met_ = 0;
+  Choices choices_;                           // of the event that is running
   std::vector<std::vector<Effect>> effects_;  // by robot; more than `counts_` are kept for their memory
   std::vector<size_t> counts_;
   std::vector<int> choice_;
