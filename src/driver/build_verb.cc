@@ -133,7 +133,7 @@ void AddBuildVerb(CLI::App& app, ExitStatus& status) {
   verb.Footer(
       "examples:\n"
       "  rondo build examples/koord/lineform.koord -o lineform\n"
-      "  rondo build examples/koord/delivery.koord --robots 8 --capacity 'List<pos>=32' --capacity 'List<Task>=4' -o delivery\n"
+      "  rondo build examples/koord/delivery --capacity 'List<pos>=32' --capacity 'List<Task>=4' -o delivery\n"
       "\n"
       "The project needs the package of Rondo (`find_package(rondo)`) and nothing else. `answers.h` is to be filled in: it answers\n"
       "what the program asks external functions. docs/build.md says more.\n"
