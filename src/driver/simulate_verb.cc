@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -8,12 +9,14 @@
 #include "base/counted.h"
 #include "driver/command.h"
 #include "driver/logs_text.h"
+#include "driver/simulate_choreography.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "runs/simulation_files.h"
 #include "sim/network.h"
 #include "sim/simulation.h"
 #include "workspace/koord_files.h"
+#include "workspace/module_files.h"
 
 namespace rondo::driver {
 
@@ -22,7 +25,11 @@ using verdict::ExitStatus;
 namespace {
 
 struct Options {
-  std::string file;
+  std::vector<std::string> files;
+  std::string choreography;
+  std::vector<std::string> admitted;
+  bool projections = false;
+  uint64_t runs = 1;
   std::string fleet;
   std::string spec;
   std::string network;
@@ -159,7 +166,7 @@ nlohmann::json ToJson(const sim::SimulationReport& report) {
 
 ExitStatus Run(const Options& options) {
   workspace::Session session;
-  runs::SimulationFiles files = runs::FindSimulationFiles(options.file, options.spec, options.fleet);
+  runs::SimulationFiles files = runs::FindSimulationFiles(options.files[0], options.spec, options.fleet);
   const auto loaded = workspace::LoadKoord({files.program, files.spec, true}, session);
   sim::Fleet fleet;
   runs::FleetFiles surroundings(files.fleet, session);
@@ -250,24 +257,54 @@ ExitStatus Run(const Options& options) {
   return status;
 }
 
+// What only the other language has.
+void RefuseMixture(const Command& verb, bool choreography) {
+  constexpr std::array<const char*, 4> kKoord{"--fleet", "--spec", "--network", "--fail-on-collision"};
+  constexpr std::array<const char*, 4> kMotion{"--choreography", "--option", "--projections", "--runs"};
+  for (const char* name : choreography ? kKoord : kMotion) {
+    if (verb.Given(name))
+      RefuseOption(name, choreography ? "only Koord programs have it" : "only choreographies have it");
+  }
+}
+
+ExitStatus RunChoreography(const Options& options) {
+  constexpr double kDuration = 60;
+  SimulateChoreographyOptions run{{options.files, options.admitted, options.choreography, options.projections},
+                                  options.seed.value_or(1),
+                                  options.runs,
+                                  options.duration > 0 ? options.duration : kDuration,
+                                  options.jobs,
+                                  options.trace,
+                                  options.json};
+  if (options.runs > 1 && !options.trace.empty()) RefuseOption("--trace", "it is of one run: leave `--runs` out");
+  return SimulateChoreography(run);
+}
+
 }  // namespace
 
 void AddSimulateVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
-  Command verb(app, "simulate", "run a Koord program on simulated robots, in virtual time");
-  verb.Option(
-          "FILE", options->file,
-          "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet, `NAME.spec` the specification")
+  Command verb(app, "simulate", "run a program or a choreography on simulated robots, in virtual time");
+  verb.Option("FILE", options->files,
+              "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet, `NAME.spec` the specification. Or a "
+              "choreography (`.rondo`), with what belongs to it (`.chor`, `.rosl`)")
       .Required();
   verb.Option("--fleet", options->fleet, "the fleet, if it is not beside the program");
   verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
   verb.Option(
       "--network", options->network,
       "let the robots agree over a network that loses and robots that fail, as this file says (TOML)");
+  verb.Option("--choreography", options->choreography, "which one of the file, if there are several");
+  verb.Flag("--projections", options->projections,
+            "let each robot follow its projection, even where it has a process");
+  verb.Option("--option", options->admitted, "an option for every choreography: `equal_durations`").OneEach();
+  verb.Option("--runs", options->runs, "so many runs of a choreography, of the seeds from `--seed` on")
+      .Between(uint64_t{1}, uint64_t{1'000'000'000});
   verb.Option("--seed", options->seed, "of everything that is random; default: the fleet's, or 1");
-  verb.Option("--duration", options->duration, "seconds; default: as the fleet says").Between(1e-3, 1e7);
+  verb.Option("--duration", options->duration, "seconds; default: as the fleet says; of choreographies at most 60")
+      .Between(1e-3, 1e7);
   verb.Option("--trace", options->trace, "write everything that happens into this file (MCAP)");
-  verb.Option("--jobs", options->jobs, "threads; default: one for each core. The run does not depend on it");
+  verb.Option("--jobs", options->jobs, "threads; default: one for each core. No run depends on it");
   verb.Flag("--fail-on-collision", options->fail_on_collision, "exit status 1 if robots touch anything");
   verb.Flag("--json", options->json, "the result as JSON on standard output");
   verb.Footer(
@@ -276,10 +313,18 @@ void AddSimulateVerb(CLI::App& app, ExitStatus& status) {
       "  rondo plot mapping.mcap --map --svg map.svg\n"
       "  rondo replay mapping.mcap\n"
       "  rondo simulate examples/koord/lineform --network examples/koord/radio.toml\n"
+      "  rondo simulate examples/choreo/handover.rondo --trace handover.mcap\n"
+      "  rondo simulate examples/choreo/fetch.rondo --runs 1000\n"
       "\n"
-      "Every invariant, assumption and summary is checked while the program runs.\n"
+      "Every invariant, assumption and summary is checked while a program runs; contacts, contracts and assumptions of motions\n"
+      "while a choreography does.\n"
       "exit status: 0 nothing was violated, 1 something was, 3 not everything could be checked, or interrupted");
-  verb.Run([options, &status] { status = Run(*options); });
+  verb.Run([options, verb, &status] {
+    const bool choreography = workspace::IsModuleFile(options->files[0]);
+    RefuseMixture(verb, choreography);
+    if (!choreography && options->files.size() > 1) RefuseOption("FILE", "a Koord program is one file");
+    status = choreography ? RunChoreography(*options) : Run(*options);
+  });
 }
 
 }  // namespace rondo::driver

@@ -6,6 +6,7 @@
 
 #include "koord/semantics/story.h"
 #include "runs/campaign_trace.h"
+#include "runs/choreography_runs.h"
 #include "runs/execution_file.h"
 #include "runs/fleet_files.h"
 #include "runs/run_file.h"
@@ -71,6 +72,7 @@ Replayed ReplayTrace(const std::string& bytes, workspace::Session& session, cons
   const nlohmann::json& run = history.value().run;
   if (sim::TextOf(run, "engine") == "campaign") return ReplayCampaign(bytes, run, session);
   if (sim::TextOf(run, "engine") == "explore") return ReplayExplored(bytes, run, session);
+  if (sim::TextOf(run, "engine") == "choreography") return ReplayChoreography(bytes, run, session, replay);
   sim::SimulationOptions options;
   options.program = sim::TextOf(run, "program");
   options.spec = sim::TextOf(run, "spec");

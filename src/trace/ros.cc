@@ -15,6 +15,7 @@ const Schema kPath = SchemaOf(ros::nav_msgs::Path::kMessage);
 const Schema kLaserScan = SchemaOf(ros::sensor_msgs::LaserScan::kMessage);
 const Schema kMarkerArray = SchemaOf(ros::visualization_msgs::MarkerArray::kMessage);
 const Schema kOccupancyGrid = SchemaOf(ros::nav_msgs::OccupancyGrid::kMessage);
+const Schema kJointState = SchemaOf(ros::sensor_msgs::JointState::kMessage);
 const Schema kTransforms = SchemaOf(ros::tf2_msgs::TFMessage::kMessage);
 
 Schema SchemaOf(const ros::Message& message) {
@@ -60,6 +61,22 @@ std::string Transform(uint64_t time, const std::string& frame, const Pose& pose)
   t.transform.translation = {pose.position[0], pose.position[1], pose.position[2]};
   t.transform.rotation = PoseOf(pose).orientation;
   return Serialised(m);
+}
+
+std::string JointState(uint64_t time, const std::vector<std::string>& names, const std::vector<double>& positions) {
+  ros::sensor_msgs::JointState m;
+  m.header = HeaderOf(time, "");
+  m.name = names;
+  m.position = positions;
+  return Serialised(m);
+}
+
+bool ReadJointState(std::string_view bytes, std::vector<std::string>& names, std::vector<double>& positions) {
+  ros::sensor_msgs::JointState m;
+  if (!ros::Parse(bytes, m) || m.name.size() != m.position.size()) return false;
+  names = std::move(m.name);
+  positions = std::move(m.position);
+  return true;
 }
 
 std::string OccupancyGrid(uint64_t time, const Grid& grid) {
@@ -122,6 +139,7 @@ std::string MarkerArray(uint64_t time, const std::vector<Marker>& markers) {
     m.color.g = from.colour[1];
     m.color.b = from.colour[2];
     m.color.a = from.colour[3];
+    for (const auto& [x, y, z] : from.corners) m.points.push_back({x, y, z});
   }
   return Serialised(array);
 }

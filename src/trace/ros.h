@@ -28,11 +28,17 @@ extern const Schema kMarkerArray;
 extern const Schema kPath;
 extern const Schema kOccupancyGrid;
 extern const Schema kTransforms;
+extern const Schema kJointState;
 
 /// Returns a geometry_msgs/msg/PoseStamped.
 std::string PoseStamped(uint64_t time, const Pose& pose);
 /// Returns a tf2_msgs/msg/TFMessage that says where a frame is.
 std::string Transform(uint64_t time, const std::string& frame, const Pose& pose);
+
+/// Returns a sensor_msgs/msg/JointState: a name for each position, in metres or radians.
+std::string JointState(uint64_t time, const std::vector<std::string>& names, const std::vector<double>& positions);
+/// Reads one; false if the bytes are none, or have not a name for each position.
+bool ReadJointState(std::string_view bytes, std::vector<std::string>& names, std::vector<double>& positions);
 
 /// Is what a laser scanner saw in one turn. Angles in radians, in the plane of its own frame; ranges in
 /// metres.
@@ -48,15 +54,16 @@ struct Scan {
 /// Returns a sensor_msgs/msg/LaserScan.
 std::string LaserScan(uint64_t time, const Scan& scan);
 
-/// Is an obstacle, to be shown as a solid.
+/// Is something to be shown as a solid.
 struct Marker {
-  enum Kind : int32_t { kCube = 1, kSphere = 2, kCylinder = 3 };
+  enum Kind : int32_t { kCube = 1, kSphere = 2, kCylinder = 3, kTriangles = 11 };
   std::string group;  ///< the marker's namespace; with `id` it names the marker
   int32_t id = 0;
   Kind kind = kCube;
   Pose pose;                      ///< of its middle
   std::array<double, 3> size{};   ///< extents along its own x, y, z in metres
   std::array<float, 4> colour{};  ///< red, green, blue, opacity, from 0 to 1
+  std::vector<std::array<double, 3>> corners{};  ///< kTriangles: three for each, counterclockwise from outside; metres
 };
 /// Returns a visualization_msgs/msg/MarkerArray.
 std::string MarkerArray(uint64_t time, const std::vector<Marker>& markers);

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 #include <utility>
 
+#include "choreo/process/labels.h"
 #include "expr/substitute.h"
 
 namespace rondo::choreo {
@@ -38,15 +38,8 @@ bool Compare::Restart() {
   return std::exchange(restarts_, false);
 }
 
-// The original interpreter found `OK` as `ok` and as `msg_ok`.
 bool Compare::SameLabel(const std::string& asked, const std::string& given) const {
-  if (asked == given || !flow_.source->loose_names) return asked == given;
-  const auto same = [](char a, char b) {
-    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-  };
-  const std::string_view bare =
-      std::string_view(given).starts_with("msg_") ? std::string_view(given).substr(4) : given;
-  return std::ranges::equal(asked, bare, same);
+  return choreo::SameLabel(asked, given, flow_.source->loose_names);
 }
 
 // -- names

@@ -27,8 +27,7 @@ class Compare {
  public:
   Compare(const Flow& flow, Graph& graph, Declarations& declarations);
 
-  /// Reports whether two labels are the same. Where names are loose, case does not matter, nor a `msg_` in
-  /// front of the given one.
+  /// Reports whether two labels are the same, for this process.
   bool SameLabel(const std::string& asked, const std::string& given) const;
   /// Returns the guard of a step as a term.
   expr::TermId GuardOf(const FlowNode& node);

@@ -1,0 +1,123 @@
+#include "runs/choreography_runs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "runs/trace_copy.h"
+#include "sim/draw/history.h"
+
+namespace rondo::runs {
+
+using nlohmann::json;
+
+namespace {
+
+choreo::Graph* Find(workspace::LoadedModule& module, const std::string& name, workspace::Session& session) {
+  std::vector<std::string> names;
+  for (choreo::Graph& graph : module.graphs) {
+    names.push_back(fmt::format("`{}`", graph.source->name.text));
+    if (name.empty() ? module.graphs.size() == 1 : graph.source->name.text == name) return &graph;
+  }
+  if (names.empty()) {
+    session.diagnostics.Report(diag::Kind::kChoreoMissing, {}, "there is no choreography to simulate");
+  } else if (name.empty()) {
+    session.diagnostics
+        .Report(diag::Kind::kChoreoMissing, {}, "nothing says which choreography is to be simulated")
+        .Help(fmt::format("`--choreography`: one of {}", fmt::join(names, ", ")));
+  } else {
+    session.diagnostics
+        .Report(diag::Kind::kChoreoMissing, {}, fmt::format("there is no choreography `{}`", name))
+        .Help(fmt::format("there is {}", fmt::join(names, ", ")));
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::optional<StagedChoreography> StageChoreography(const ChoreographyFiles& files, workspace::Session& session) {
+  StagedChoreography staged{workspace::LoadModule(files.files, files.admitted, session), {}};
+  const auto conditions = workspace::CheckStructure(*staged.module, session);
+  if (!conditions || session.diagnostics.has_errors()) return std::nullopt;
+  choreo::Graph* graph = Find(*staged.module, files.choreography, session);
+  if (graph == nullptr) return std::nullopt;
+  staged.cast =
+      choreo::MakeCast(staged.module->module, *graph, *staged.module->declarations, files.projections);
+  return staged;
+}
+
+json RecordOf(const ChoreographyFiles& files, const StagedChoreography& staged,
+              const sim::motions::ChoreographyOptions& options, const workspace::Session& session) {
+  json robots = json::array(), texts = json::object();
+  for (const choreo::Name& robot : staged.cast.graph->robots)
+    robots.push_back({{"name", robot.text}, {"radius", 0.0}});
+  for (size_t f = 0; f < session.sources.size(); ++f)
+    texts[std::string(session.sources.path(diag::FileId(f)))] = std::string(session.sources.text(diag::FileId(f)));
+  return {{"format", "rondo-trace/1"},
+          {"engine", "choreography"},
+          {"program_name", std::filesystem::path(files.files.front()).filename().string()},
+          {"choreography", staged.cast.graph->source->name.text},
+          {"files", files.files},
+          {"admitted", files.admitted},
+          {"projections", files.projections},
+          {"texts", texts},
+          {"robots", robots},
+          {"seed", options.seed},
+          {"duration", options.duration}};
+}
+
+base::Result<sim::motions::ChoreographyReport> RecordChoreography(const StagedChoreography& staged,
+                                                         const sim::motions::ChoreographyOptions& options,
+                                                         const json& record, const std::string& path) {
+  auto opened = trace::Writer::Open(path);
+  if (!opened.ok()) return base::Error{fmt::format("cannot write `{}`: {}", path, opened.error().message)};
+  trace::Writer writer = std::move(opened).value();
+  sim::motions::StageRecorder recorder(writer, *staged.cast.graph, staged.module->arena, record);
+  auto report = sim::motions::RunChoreography(staged.cast, options, &recorder);
+  if (!report.ok()) return report;
+  const auto done = writer.Finish();
+  if (!done.ok()) return base::Error{fmt::format("cannot write `{}`: {}", path, done.error().message)};
+  return report;
+}
+
+Replayed ReplayChoreography(const std::string& bytes, const json& record, workspace::Session& session,
+                            const ReplayOptions& replay) {
+  ChoreographyFiles files;
+  sim::motions::ChoreographyOptions options;
+  std::map<std::string, std::string> texts;
+  try {
+    record.at("files").get_to(files.files);
+    record.at("admitted").get_to(files.admitted);
+    record.at("choreography").get_to(files.choreography);
+    record.at("projections").get_to(files.projections);
+    record.at("texts").get_to(texts);
+    record.at("seed").get_to(options.seed);
+    record.at("duration").get_to(options.duration);
+  } catch (const json::exception&) {
+    return {false, "the record of the run is damaged"};
+  }
+  session.read = [&texts](const std::string& path) -> base::Result<std::string> {
+    const auto it = texts.find(path);
+    if (it == texts.end()) return base::Error{"the trace does not keep it"};
+    return it->second;
+  };
+  const auto staged = files.files.empty() ? std::nullopt : StageChoreography(files, session);
+  if (!staged) return {false, "the choreography that the trace keeps cannot be used"};
+  options.stop = replay.stop;
+  options.progress = replay.progress;
+  base::Result<sim::motions::ChoreographyReport> report = base::Error{};
+  const auto fresh = CopyOf([&](const std::string& path) -> base::Result<bool> {
+    report = RecordChoreography(*staged, options, record, path);
+    return report.ok() ? base::Result<bool>(true) : report.error();
+  });
+  if (!fresh.ok()) return {false, fresh.error().message};
+  if (report.value().ended == sim::motions::Curtain::kInterrupted) return {false, "interrupted", true};
+  if (fresh.value() == bytes)
+    return {true, fmt::format("the same run, bit for bit: {:.6g} s, {} messages, {} motions, {} bytes",
+                              report.value().time, report.value().messages, report.value().motions, bytes.size())};
+  return {false, "differs: " + FirstDifference(bytes, fresh.value())};
+}
+
+}  // namespace rondo::runs

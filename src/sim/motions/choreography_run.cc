@@ -1,0 +1,283 @@
+#include "sim/motions/choreography_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "choreo/prove/sampler.h"
+#include "sim/motions/contacts.h"
+#include "sim/motions/disturbances.h"
+#include "sim/motions/performer.h"
+
+namespace rondo::sim::motions {
+namespace {
+
+using runtime::sessions::Frame;
+using runtime::sessions::Session;
+using runtime::sessions::Step;
+using runtime::sessions::Time;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLook = 0.01;    // seconds from one look at the world to the next
+constexpr int kMostAtOnce = 10'000;  // things that happen at one instant
+
+class ChoreographyRun {
+ public:
+  ChoreographyRun(const choreo::Cast& cast, const ChoreographyOptions& options, StageRecorder* recorder)
+      : cast_(cast),
+        graph_(*cast.graph),
+        world_(*graph_.world),
+        arena_(cast.declarations->evaluator().arena()),
+        options_(options),
+        recorder_(recorder),
+        random_(options.seed),
+        scene_(world_),
+        library_(graph_, arena_, scene_) {}
+
+  base::Result<ChoreographyReport> Go() {
+    if (!Place()) return base::Error{"no state was found in which the choreography may begin"};
+    disturbances_.emplace(world_, arena_, scene_, random_);
+    contacts_.emplace(world_, arena_, scene_, report_);
+    for (size_t r = 0; r < graph_.robots.size(); ++r) {
+      performers_.push_back(std::make_unique<Performer>(
+          cast_, choreo::RobotId(r), scene_, library_, random_, [this](MotionRun& m) { Begins(m); },
+          [this](const MotionRun& m) { Ends(m); }));
+    }
+    if (recorder_ != nullptr) recorder_->Scene(0, scene_);
+    while (!Over()) Advance();
+    report_.time = time_;
+    if (recorder_ != nullptr) recorder_->Finish(time_, scene_, report_);
+    return report_;
+  }
+
+ private:
+  // -- the beginning
+
+  // A state that `initially` allows; what it does not mention is anywhere in its range.
+  bool Place() {
+    std::vector<expr::TermId> allowed{graph_.initially};
+    std::vector<std::pair<expr::TermId, std::pair<double, double>>> ranges;
+    expr::Numeric numeric(arena_, {});
+    for (const robot::Body& body : world_.bodies) {
+      for (const auto* list : {&body.states, &body.unknowns}) {
+        for (const robot::Variable& v : *list) {
+          if (v.least) allowed.push_back(arena_.Le(*v.least, v.term));
+          if (v.most) allowed.push_back(arena_.Le(v.term, *v.most));
+          if (!v.least || !v.most) continue;
+          ranges.emplace_back(v.term, std::pair(numeric(*v.least), numeric(*v.most)));
+        }
+      }
+    }
+    constexpr int kTries = 1000;
+    for (const auto& [term, range] : ranges) scene_[term] = Between(random_, range.first, range.second);
+    const auto point = choreo::Sampler(arena_, arena_.And(allowed)).Draw(random_, kTries);
+    if (!point) return false;
+    for (size_t i = 0; i < scene_.variables().size(); ++i) {
+      const auto it = point->find(scene_.variables()[i]);
+      if (it != point->end()) scene_.values()[i] = it->second;
+    }
+    return true;
+  }
+
+  // -- what happens
+
+  void Tell(Wrong wrong, const std::string& what) {
+    if (recorder_ != nullptr) recorder_->Incident(time_, wrong, what);
+    for (Incident& known : report_.incidents) {
+      if (known.wrong != wrong || known.what != what) continue;
+      ++known.count;
+      return;
+    }
+    report_.incidents.push_back({wrong, what, time_, 1});
+  }
+
+  void Begins(MotionRun& motion) {
+    ++report_.motions;
+    scene_.SetClock(0);
+    const double miss = motion.code().pre.Miss(scene_.values());
+    if (miss > Condition::kTolerance)
+      Tell(Wrong::kPrecondition,
+           fmt::format("the precondition of `{}` does not hold where it begins", motion.code().text));
+    if (recorder_ != nullptr) recorder_->Begins(time_, motion.code());
+  }
+
+  void Ends(const MotionRun& motion) {
+    if (recorder_ != nullptr) recorder_->Ends(time_, motion.code());
+  }
+
+  // Lets everything happen that can happen at this instant. False if that has no end.
+  bool Settle() {
+    for (int i = 0; i < kMostAtOnce; ++i) {
+      bool went = false;
+      for (const auto& performer : performers_) went = performer->session().Advance(now_) || went;
+      for (const auto& performer : performers_) {
+        for (const Frame& frame : performer->session().TakeFrames()) {
+          went = true;
+          if (frame.kind == Frame::Kind::kTaken) Taken(frame);
+          performers_[frame.to]->session().Hear(frame);
+          if (frame.kind == Frame::Kind::kOffer) offered_[frame.from] = frame;
+        }
+      }
+      if (!went) return true;
+    }
+    return false;
+  }
+
+  // The message that this answers has been consumed.
+  void Taken(const Frame& answer) {
+    const auto it = offered_.find(answer.to);
+    if (it == offered_.end() || it->second.to != answer.from || it->second.number != answer.number) return;
+    ++report_.messages;
+    if (recorder_ != nullptr) recorder_->Message(time_, it->second);
+    offered_.erase(it);
+  }
+
+  // -- time
+
+  void Advance() {
+    double until = time_ + kLook;
+    for (const auto& performer : performers_) {
+      const MotionRun* motion = performer->motion();
+      if (motion == nullptr) continue;
+      until = std::min({until, time_ + motion->resolution(), time_ + (motion->next() - motion->time())});
+    }
+    const Time next = std::max<Time>(now_ + 1, std::llround(until * 1e9));
+    const double dt = static_cast<double>(next - now_) * 1e-9;
+    now_ = next;
+    time_ = static_cast<double>(now_) * 1e-9;
+    Disturb();
+    for (const auto& performer : performers_) {
+      MotionRun* motion = performer->motion();
+      if (motion == nullptr) continue;
+      motion->To(motion->time() + dt);
+    }
+  }
+
+  void Disturb() {
+    std::vector<bool> set(scene_.variables().size());
+    for (const auto& performer : performers_) {
+      MotionRun* motion = performer->motion();
+      if (motion == nullptr || !motion->code().drive || !motion->code().drive->laws) continue;
+      for (const size_t place : motion->code().drive->laws->set) set[place] = true;
+    }
+    disturbances_->To(time_, set);
+    for (const auto& performer : performers_) {
+      MotionRun* motion = performer->motion();
+      if (motion == nullptr) continue;
+      scene_.SetClock(motion->time());
+      if (!motion->code().assume.Holds(scene_.values()))
+        motion->code().assume.Approach(scene_.values(), disturbances_->all());
+    }
+  }
+
+  // -- what is seen
+
+  void Look() {
+    std::vector<MotionRun*> motions;
+    for (const auto& performer : performers_) {
+      motions.push_back(performer->motion());
+      MotionRun* motion = motions.back();
+      if (motion == nullptr) continue;
+      scene_.SetClock(motion->time());
+      if (!motion->code().assume.Holds(scene_.values()))
+        Tell(Wrong::kAssumption,
+             fmt::format("what `{}` assumes of others does not hold", motion->code().text));
+      if (!motion->broken().empty()) Tell(Wrong::kContract, motion->broken());
+      if (!motion->lost().empty() && report_.lost.empty()) report_.lost = motion->lost();
+    }
+    contacts_->Look(scene_, motions, [this](Wrong wrong, const std::string& what) { Tell(wrong, what); });
+  }
+
+  bool End(Curtain curtain) {
+    report_.ended = curtain;
+    return true;
+  }
+
+  // Does what is to be done at this instant, and tells whether the run is over.
+  bool Over() {
+    if (!Settle()) {
+      Tell(Wrong::kNoTime, "things happen without end, and no time passes");
+      return End(Curtain::kFailed);
+    }
+    Look();
+    if (recorder_ != nullptr) recorder_->Scene(time_, scene_);
+    if (!report_.lost.empty()) return End(Curtain::kLost);
+    for (const auto& performer : performers_) {
+      if (!performer->problem().empty()) {
+        report_.lost = performer->problem();
+        return End(Curtain::kLost);
+      }
+    }
+    const auto all = [&](auto holds) {
+      return std::ranges::all_of(performers_, [&](const auto& p) { return holds(*p); });
+    };
+    for (size_t r = 0; r < performers_.size(); ++r) {
+      const Session& session = performers_[r]->session();
+      if (!session.failed()) continue;
+      Tell(Wrong::kChoice, fmt::format("`{}`: {}", graph_.NameOf(choreo::RobotId(r)), session.fault()));
+      return End(Curtain::kFailed);
+    }
+    if (all([](Performer& p) { return p.session().ended(); })) return End(Curtain::kEnd);
+    const bool waits = all([](Performer& p) { return p.session().idle(); });
+    if (waits || all([](Performer& p) { return p.session().ended() || !p.session().moving(); })) {
+      Tell(Wrong::kStuck, Waiting());
+      return End(Curtain::kFailed);
+    }
+    if (options_.stop.StopRequested()) return End(Curtain::kInterrupted);
+    if (time_ >= options_.duration) return End(Curtain::kTime);
+    for (size_t r = 0; r < performers_.size(); ++r) {
+      const Session& session = performers_[r]->session();
+      if (session.ended() || session.moving()) continue;
+      Tell(Wrong::kWaiting, fmt::format("time passes for `{}`, which makes no motion",
+                                        graph_.NameOf(choreo::RobotId(r))));
+    }
+    if (options_.progress) options_.progress(time_, options_.duration);
+    return false;
+  }
+
+  // What everybody waits for.
+  std::string Waiting() const {
+    std::string text;
+    for (size_t r = 0; r < performers_.size(); ++r) {
+      const Session& session = performers_[r]->session();
+      if (session.ended() || !session.step()) continue;
+      const Step& step = *session.step();
+      std::string what;
+      if (step.kind == Step::Kind::kSend)
+        what = fmt::format("to send `{}` to `{}`", step.label, graph_.NameOf(choreo::RobotId(step.to)));
+      for (const auto& c : step.cases)
+        what += fmt::format("{}`{}` from `{}`", what.empty() ? "for " : " or ", c.label,
+                            graph_.NameOf(choreo::RobotId(c.from)));
+      text += fmt::format("{}`{}` waits {}", text.empty() ? "" : ", ", graph_.NameOf(choreo::RobotId(r)), what);
+    }
+    return text;
+  }
+
+  const choreo::Cast& cast_;
+  const choreo::Graph& graph_;
+  const robot::World& world_;
+  expr::Arena& arena_;
+  const ChoreographyOptions& options_;
+  StageRecorder* recorder_;
+  std::mt19937_64 random_;
+  SceneState scene_;
+  MotionLibrary library_;
+  std::optional<Disturbances> disturbances_;
+  std::optional<Contacts> contacts_;
+  std::vector<std::unique_ptr<Performer>> performers_;
+  std::map<uint32_t, Frame> offered_;  // by sender
+  ChoreographyReport report_;
+  Time now_ = 0;     // nanoseconds
+  double time_ = 0;  // the same in seconds
+};
+
+}  // namespace
+
+base::Result<ChoreographyReport> RunChoreography(const choreo::Cast& cast, const ChoreographyOptions& options,
+                                                 StageRecorder* recorder) {
+  return ChoreographyRun(cast, options, recorder).Go();
+}
+
+}  // namespace rondo::sim::motions

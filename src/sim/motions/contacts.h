@@ -1,0 +1,41 @@
+#pragma once
+
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "robot/contact/solid.h"
+#include "sim/motions/motion_run.h"
+#include "sim/motions/report.h"
+
+namespace rondo::sim::motions {
+
+/// Watches whether bodies touch, and the footprints of their motions: of robots, and of robots and obstacles.
+class Contacts {
+ public:
+  /// Is told that two begin to touch.
+  using Tell = std::function<void(Wrong, const std::string& what)>;
+
+  Contacts(const robot::World& world, expr::Arena& arena, const SceneState& scene, ChoreographyReport& report);
+
+  /// Looks at the present state. `motions`: by robot, the one under way; nullptr if it makes none. Changes no more of the
+  /// scene than its clock.
+  void Look(SceneState& scene, const std::vector<MotionRun*>& motions, const Tell& tell);
+
+ private:
+  struct Thing {
+    std::string name;
+    std::optional<robot::Solid> solid;
+  };
+  void Pair(size_t a, size_t b, const std::vector<MotionRun*>& motions, const Tell& tell);
+  const robot::Solid* FootprintOf(size_t thing, const std::vector<MotionRun*>& motions) const;
+  void Touch(Wrong wrong, size_t a, size_t b, bool touches, const Tell& tell);
+
+  std::vector<Thing> things_;  // robots, then obstacles
+  size_t robots_ = 0;
+  std::set<std::tuple<Wrong, size_t, size_t>> touching_;
+  ChoreographyReport& report_;
+};
+
+}  // namespace rondo::sim::motions

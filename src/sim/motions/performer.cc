@@ -1,0 +1,97 @@
+#include "sim/motions/performer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "expr/substitute.h"
+
+namespace rondo::sim::motions {
+
+using runtime::sessions::Progress;
+
+namespace {
+
+constexpr runtime::sessions::Time kResend = 20'000'000;  // nanoseconds
+
+}  // namespace
+
+base::Result<MotionCode*> MotionLibrary::Find(size_t instance) {
+  auto& known = known_[instance];
+  if (known == nullptr) {
+    auto code = CodeOf(graph_, graph_.instances[instance], arena_, scene_);
+    if (!code.ok()) return code.error();
+    known = std::make_unique<MotionCode>(std::move(code).value());
+  }
+  return known.get();
+}
+
+Performer::Performer(const choreo::Cast& cast, choreo::RobotId robot, SceneState& scene, MotionLibrary& library,
+                     std::mt19937_64& random, Began began, Over over)
+    : cast_(cast),
+      scene_(scene),
+      library_(library),
+      random_(random),
+      began_(std::move(began)),
+      over_(std::move(over)),
+      program_(choreo::ScriptOf(cast, robot, *this)) {
+  session_.emplace(1, robot.value, kResend, *program_, *this);
+}
+
+void Performer::Begin(size_t motion) {
+  const auto code = library_.Find(motion);
+  if (!code.ok()) {
+    problem_ = code.error().message;
+    return;
+  }
+  motion_.emplace(*code.value(), scene_, random_);
+  began_(*motion_);
+}
+
+Progress Performer::Tick() {
+  if (!motion_) return problem_.empty() ? Progress::kStopped : Progress::kFailed;
+  const Progress progress = motion_->progress();
+  if (progress == Progress::kStopped) Halt();
+  return progress;
+}
+
+// What moves as it is told stops at once; with a controller, too: its contract holds at every moment.
+void Performer::Halt() {
+  over_(*motion_);
+  motion_.reset();
+}
+
+const expr::Numeric::Point& Performer::Now() { return now_ = scene_.Point(); }
+
+// Numbers, one after the other, until the refinement holds.
+std::optional<std::vector<double>> Performer::Choose(const choreo::Node& message) {
+  expr::Arena& arena = cast_.declarations->evaluator().arena();
+  std::vector<expr::TermId> open;
+  for (size_t i = 0; i < message.payload.size(); ++i) {
+    if (message.names[i].empty()) continue;
+    for (const expr::TermId t : message.payload[i].terms) open.push_back(t);
+  }
+  constexpr int kTries = 1000;
+  for (int i = 0; i < kTries; ++i) {
+    expr::Numeric::Point point = scene_.Point();
+    expr::Substitution formulas;
+    for (const expr::TermId t : open) {
+      if (arena.sort_of(t) == arena.Bool()) {
+        formulas.emplace(t, arena.Constant(random_() % 2 == 0));
+        continue;
+      }
+      // Small numbers of either sign, often whole ones.
+      const double x = Between(random_, -1, 1) * std::pow(10, Between(random_, -1, 2));
+      point[t] = random_() % 2 == 0 ? x : std::round(x);
+    }
+    const expr::TermId refinement = expr::Substitute(arena, message.refinement, formulas);
+    if (expr::Numeric(arena, point).Violation(refinement) > 0) continue;
+    std::vector<robot::Value> payload = message.payload;
+    for (robot::Value& value : payload) {
+      for (expr::TermId& t : value.terms) t = expr::Substitute(arena, t, formulas);
+    }
+    return choreo::ValuesOf(arena, payload, point);
+  }
+  return std::nullopt;
+}
+
+}  // namespace rondo::sim::motions
