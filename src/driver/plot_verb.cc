@@ -3,8 +3,10 @@
 #include "driver/command.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
+#include "runs/choreography_scene.h"
 #include "runs/fleet_files.h"
 #include "sim/draw/plots.h"
+#include "sim/draw/timeline.h"
 #include "trace/reader.h"
 
 namespace rondo::driver {
@@ -19,7 +21,25 @@ struct Options {
   bool paths = false;
   bool distances = false;
   bool map = false;
+  bool timeline = false;
+  double scene = -1;
 };
+
+// Runs of choreographies have pictures of their own.
+ExitStatus PlotChoreography(const Options& options, const std::string& bytes) {
+  const auto history = sim::ReadStageHistory(bytes);
+  if (!history.ok()) {
+    PrintFailure(fmt::format("`{}`: {}", options.trace, history.error().message));
+    return ExitStatus::kRejected;
+  }
+  if (options.scene < 0) return WritePicture(options.svg, sim::DrawTimeline(history.value()));
+  workspace::Session session;
+  const auto scene = runs::DrawRunScene(history.value(), options.scene, session);
+  if (scene.ok()) return WritePicture(options.svg, scene.value());
+  PrintDiagnostics(session.sources, session.diagnostics);
+  PrintFailure(fmt::format("`{}`: {}", options.trace, scene.error().message));
+  return ExitStatus::kRejected;
+}
 
 ExitStatus Run(const Options& options) {
   const auto bytes = trace::ReadTrace(options.trace);
@@ -30,6 +50,13 @@ ExitStatus Run(const Options& options) {
   const auto history = sim::ReadHistory(bytes.value());
   if (!history.ok()) {
     PrintFailure(fmt::format("`{}`: {}", options.trace, history.error().message));
+    return ExitStatus::kRejected;
+  }
+  const bool choreography = sim::TextOf(history.value().run, "engine") == "choreography";
+  if (choreography && !options.paths && !options.distances && !options.map)
+    return PlotChoreography(options, bytes.value());
+  if (options.timeline || options.scene >= 0) {
+    PrintFailure(fmt::format("`{}` is no run of a choreography: `--timeline` and `--scene` are for those", options.trace));
     return ExitStatus::kRejected;
   }
   workspace::Session session;  // it could be read when the trace was made
@@ -60,13 +87,23 @@ void AddPlotVerb(CLI::App& app, ExitStatus& status) {
       verb.Flag("--distances", options->distances, "how near robots and obstacles came, over time");
   const CommandOption map =
       verb.Flag("--map", options->map, "the map that the robots drew, and the world as it is");
-  paths.Excludes(distances).Excludes(map);
-  distances.Excludes(map);
+  CommandOption timeline = verb.Flag("--timeline", options->timeline,
+                                     "messages and motions of a choreography over time (its default)");
+  CommandOption scene = verb.Option("--scene", options->scene,
+                                    "where everything is after so many seconds of a choreography, from above and from the side")
+                            .Between(0.0, 1e9);
+  paths.Excludes(distances).Excludes(map).Excludes(timeline).Excludes(scene);
+  distances.Excludes(map).Excludes(timeline).Excludes(scene);
+  timeline.Excludes(map).Excludes(scene);
+  scene.Excludes(map);
   verb.Footer(
       "examples:\n"
       "  rondo simulate examples/koord/lineform --trace line.mcap\n"
       "  rondo plot line.mcap --svg paths.svg\n"
-      "  rondo plot line.mcap --distances --svg distances.svg");
+      "  rondo plot line.mcap --distances --svg distances.svg\n"
+      "  rondo simulate examples/choreo/handover.rondo --trace handover.mcap\n"
+      "  rondo plot handover.mcap --svg timeline.svg\n"
+      "  rondo plot handover.mcap --scene 7.5 --svg scene.svg");
   verb.Run([options, &status] { status = Run(*options); });
 }
 

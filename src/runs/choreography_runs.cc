@@ -82,10 +82,8 @@ base::Result<sim::motions::ChoreographyReport> RecordChoreography(const StagedCh
   return report;
 }
 
-Replayed ReplayChoreography(const std::string& bytes, const json& record, workspace::Session& session,
-                            const ReplayOptions& replay) {
+std::optional<StagedChoreography> StageRecorded(const json& record, workspace::Session& session) {
   ChoreographyFiles files;
-  sim::motions::ChoreographyOptions options;
   std::map<std::string, std::string> texts;
   try {
     record.at("files").get_to(files.files);
@@ -93,20 +91,27 @@ Replayed ReplayChoreography(const std::string& bytes, const json& record, worksp
     record.at("choreography").get_to(files.choreography);
     record.at("projections").get_to(files.projections);
     record.at("texts").get_to(texts);
-    record.at("seed").get_to(options.seed);
-    record.at("duration").get_to(options.duration);
   } catch (const json::exception&) {
-    return {false, "the record of the run is damaged"};
+    return std::nullopt;
   }
-  session.read = [&texts](const std::string& path) -> base::Result<std::string> {
+  if (files.files.empty()) return std::nullopt;
+  session.read = [texts](const std::string& path) -> base::Result<std::string> {
     const auto it = texts.find(path);
     if (it == texts.end()) return base::Error{"the trace does not keep it"};
     return it->second;
   };
-  const auto staged = files.files.empty() ? std::nullopt : StageChoreography(files, session);
+  return StageChoreography(files, session);
+}
+
+Replayed ReplayChoreography(const std::string& bytes, const json& record, workspace::Session& session,
+                            const ReplayOptions& replay) {
+  const auto staged = StageRecorded(record, session);
   if (!staged) return {false, "the choreography that the trace keeps cannot be used"};
-  options.stop = replay.stop;
-  options.progress = replay.progress;
+  if (!record.contains("seed") || !record["seed"].is_number_unsigned() || !record.contains("duration") ||
+      !record["duration"].is_number())
+    return {false, "the record of the run is damaged"};
+  const sim::motions::ChoreographyOptions options{record["seed"].get<uint64_t>(), record["duration"].get<double>(),
+                                                  replay.stop, replay.progress};
   base::Result<sim::motions::ChoreographyReport> report = base::Error{};
   const auto fresh = CopyOf([&](const std::string& path) -> base::Result<bool> {
     report = RecordChoreography(*staged, options, record, path);

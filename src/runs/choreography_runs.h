@@ -42,6 +42,10 @@ base::Result<sim::motions::ChoreographyReport> RecordChoreography(const StagedCh
                                                          const sim::motions::ChoreographyOptions& options,
                                                          const nlohmann::json& record, const std::string& path);
 
+/// Loads and checks the choreography of which a trace keeps the record. Nothing if it cannot be used; then the session knows
+/// why, or the record is damaged.
+std::optional<StagedChoreography> StageRecorded(const nlohmann::json& record, workspace::Session& session);
+
 /// Makes the run of a trace again, from what it keeps, and compares bit for bit.
 Replayed ReplayChoreography(const std::string& bytes, const nlohmann::json& record, workspace::Session& session,
                             const ReplayOptions& options);

@@ -14,6 +14,7 @@
 namespace rondo::sim::motions {
 namespace {
 
+using runtime::sessions::Expected;
 using runtime::sessions::Frame;
 using runtime::sessions::Session;
 using runtime::sessions::Step;
@@ -23,7 +24,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLook = 0.01;    // seconds from one look at the world to the next
 constexpr int kMostAtOnce = 10'000;  // things that happen at one instant
 
-class ChoreographyRun {
+class ChoreographyRun final : public Audience {
  public:
   ChoreographyRun(const choreo::Cast& cast, const ChoreographyOptions& options, StageRecorder* recorder)
       : cast_(cast),
@@ -41,9 +42,8 @@ class ChoreographyRun {
     disturbances_.emplace(world_, arena_, scene_, random_);
     contacts_.emplace(world_, arena_, scene_, report_);
     for (size_t r = 0; r < graph_.robots.size(); ++r) {
-      performers_.push_back(std::make_unique<Performer>(
-          cast_, choreo::RobotId(r), scene_, library_, random_, [this](MotionRun& m) { Begins(m); },
-          [this](const MotionRun& m) { Ends(m); }));
+      performers_.push_back(
+          std::make_unique<Performer>(cast_, choreo::RobotId(r), scene_, library_, random_, *this));
     }
     if (recorder_ != nullptr) recorder_->Scene(0, scene_);
     while (!Over()) Advance();
@@ -93,7 +93,7 @@ class ChoreographyRun {
     report_.incidents.push_back({wrong, what, time_, 1});
   }
 
-  void Begins(MotionRun& motion) {
+  void Begins(MotionRun& motion) override {
     ++report_.motions;
     scene_.SetClock(0);
     const double miss = motion.code().pre.Miss(scene_.values());
@@ -103,8 +103,13 @@ class ChoreographyRun {
     if (recorder_ != nullptr) recorder_->Begins(time_, motion.code());
   }
 
-  void Ends(const MotionRun& motion) {
+  void Ends(const MotionRun& motion) override {
     if (recorder_ != nullptr) recorder_->Ends(time_, motion.code());
+  }
+
+  void Takes(choreo::RobotId robot, const Expected& message, const std::vector<double>& values) override {
+    ++report_.messages;
+    if (recorder_ != nullptr) recorder_->Message(time_, message.from, robot.value, message.label, values);
   }
 
   // Lets everything happen that can happen at this instant. False if that has no end.
@@ -115,23 +120,12 @@ class ChoreographyRun {
       for (const auto& performer : performers_) {
         for (const Frame& frame : performer->session().TakeFrames()) {
           went = true;
-          if (frame.kind == Frame::Kind::kTaken) Taken(frame);
           performers_[frame.to]->session().Hear(frame);
-          if (frame.kind == Frame::Kind::kOffer) offered_[frame.from] = frame;
         }
       }
       if (!went) return true;
     }
     return false;
-  }
-
-  // The message that this answers has been consumed.
-  void Taken(const Frame& answer) {
-    const auto it = offered_.find(answer.to);
-    if (it == offered_.end() || it->second.to != answer.from || it->second.number != answer.number) return;
-    ++report_.messages;
-    if (recorder_ != nullptr) recorder_->Message(time_, it->second);
-    offered_.erase(it);
   }
 
   // -- time
@@ -267,7 +261,6 @@ class ChoreographyRun {
   std::optional<Disturbances> disturbances_;
   std::optional<Contacts> contacts_;
   std::vector<std::unique_ptr<Performer>> performers_;
-  std::map<uint32_t, Frame> offered_;  // by sender
   ChoreographyReport report_;
   Time now_ = 0;     // nanoseconds
   double time_ = 0;  // the same in seconds

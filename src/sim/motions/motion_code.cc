@@ -39,6 +39,7 @@ class Coder {
          end = Compiled(arena_.And(during, c.post));
     if (!problem_.empty()) return base::Error{problem_};
     MotionCode code{fmt::format("{}: {}", body_.name.text, instance_.text),
+                    instance_.text,
                     instance_.robot.index(),
                     instance_.duration.least.ToDouble(),
                     instance_.duration.most ? instance_.duration.most->ToDouble() : kInfinity,

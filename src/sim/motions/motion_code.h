@@ -32,7 +32,8 @@ struct DriveCode {
 
 /// Holds a motion of one robot with its arguments, as code over the variables of the scene.
 struct MotionCode {
-  std::string text;  ///< `Move(1 m)`
+  std::string text;  ///< for people: `cart: Move(1 m)`
+  std::string call;  ///< `Move(1 m)`
   size_t robot = 0;
   double least = 0, most = std::numeric_limits<double>::infinity();  ///< seconds
   bool interruptible = true;

@@ -41,8 +41,8 @@ MotionRun::MotionRun(MotionCode& code, SceneState& scene, std::mt19937_64& rando
   }
   if (code_.free.empty()) return;
   if (!code_.interruptible) {
-    resolution_ = std::clamp(over_ / kStates, 1e-4, kSmooth);
     ChooseGoal();
+    resolution_ = std::clamp(over_ / kStates, 1e-4, kSmooth);
   }
   ChooseWay();
 }
@@ -57,10 +57,14 @@ void MotionRun::SetFree(std::span<const double> values) {
   for (size_t i = 0; i < values.size(); ++i) scene_.values()[code_.free[i]] = values[i];
 }
 
+double MotionRun::Longest() const {
+  constexpr double kLonger = 10;  // seconds than it has to be, where nothing bounds it
+  return std::min(code_.most, code_.least + kLonger);
+}
+
 void MotionRun::ChooseTimes() {
   if (!code_.interruptible) {
-    constexpr double kLonger = 10;  // than it has to be, where nothing bounds it
-    over_ = Somewhere(random_, code_.least, std::min(code_.most, code_.least + kLonger));
+    over_ = Somewhere(random_, code_.least, Longest());
     return;
   }
   over_ = code_.most;
@@ -72,6 +76,8 @@ void MotionRun::ChooseGoal() {
   constexpr int kTries = 20;
   std::vector<double>& values = scene_.values();
   for (int i = 0; i < kTries; ++i) {
+    // Some contracts can be kept only if the motion takes a certain time: its least or its longest, most likely.
+    if (i > 0) over_ = i == 1 ? Longest() : i == 2 ? code_.least : Somewhere(random_, code_.least, Longest());
     std::vector<double> guess = start_;
     if (i > 0 || random_() % 2 == 0) {
       for (size_t k = 0; k < guess.size(); ++k) {

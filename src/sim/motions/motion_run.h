@@ -35,6 +35,7 @@ class MotionRun {
   const std::string& broken() const { return broken_; }
 
  private:
+  double Longest() const;
   void ChooseTimes();
   void ChooseGoal();
   void ChooseWay();

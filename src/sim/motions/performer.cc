@@ -26,15 +26,29 @@ base::Result<MotionCode*> MotionLibrary::Find(size_t instance) {
 }
 
 Performer::Performer(const choreo::Cast& cast, choreo::RobotId robot, SceneState& scene, MotionLibrary& library,
-                     std::mt19937_64& random, Began began, Over over)
+                     std::mt19937_64& random, Audience& audience)
     : cast_(cast),
       scene_(scene),
       library_(library),
       random_(random),
-      began_(std::move(began)),
-      over_(std::move(over)),
-      program_(choreo::ScriptOf(cast, robot, *this)) {
-  session_.emplace(1, robot.value, kResend, *program_, *this);
+      audience_(audience),
+      robot_(robot),
+      script_(choreo::ScriptOf(cast, robot, *this)) {
+  runtime::sessions::Program& program = *this;
+  runtime::sessions::Motions& motions = *this;
+  session_.emplace(uint64_t{1}, robot.value, kResend, program, motions);
+}
+
+// What the script says, with everybody told of it.
+runtime::sessions::Step Performer::Next() {
+  runtime::sessions::Step step = script_->Next();
+  cases_ = step.cases;
+  return step;
+}
+
+void Performer::Took(size_t which, const std::vector<double>& values) {
+  audience_.Takes(robot_, cases_[which], values);
+  script_->Took(which, values);
 }
 
 void Performer::Begin(size_t motion) {
@@ -44,7 +58,7 @@ void Performer::Begin(size_t motion) {
     return;
   }
   motion_.emplace(*code.value(), scene_, random_);
-  began_(*motion_);
+  audience_.Begins(*motion_);
 }
 
 Progress Performer::Tick() {
@@ -56,7 +70,7 @@ Progress Performer::Tick() {
 
 // What moves as it is told stops at once; with a controller, too: its contract holds at every moment.
 void Performer::Halt() {
-  over_(*motion_);
+  audience_.Ends(*motion_);
   motion_.reset();
 }
 

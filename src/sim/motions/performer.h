@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -26,16 +25,25 @@ class MotionLibrary {
   std::map<size_t, std::unique_ptr<MotionCode>> known_;
 };
 
-/// Is one simulated robot of a choreography: its program with its session, what it senses, and its motions.
-class Performer final : public runtime::sessions::Motions, public choreo::Senses {
+/// Is told what a robot does, as it does it.
+class Audience {
  public:
-  /// Is told when a motion begins, with what was wrong at that moment, and when it is over.
-  using Began = std::function<void(MotionRun&)>;
-  using Over = std::function<void(const MotionRun&)>;
+  virtual ~Audience() = default;
+  virtual void Begins(MotionRun& motion) = 0;
+  virtual void Ends(const MotionRun& motion) = 0;
+  /// A message is consumed.
+  virtual void Takes(choreo::RobotId robot, const runtime::sessions::Expected& message,
+                     const std::vector<double>& values) = 0;
+};
 
+/// Is one simulated robot of a choreography: its program with its session, what it senses, and its motions.
+class Performer final : private runtime::sessions::Program,
+                        private runtime::sessions::Motions,
+                        private choreo::Senses {
+ public:
   /// Everything must outlive it.
   Performer(const choreo::Cast& cast, choreo::RobotId robot, SceneState& scene, MotionLibrary& library,
-            std::mt19937_64& random, Began began, Over over);
+            std::mt19937_64& random, Audience& audience);
   Performer(const Performer&) = delete;
   Performer& operator=(const Performer&) = delete;
 
@@ -46,6 +54,13 @@ class Performer final : public runtime::sessions::Motions, public choreo::Senses
   /// Says why its motion could not begin; empty if all is well.
   const std::string& problem() const { return problem_; }
 
+ private:
+  runtime::sessions::Step Next() override;
+  bool Waits() const override { return script_->Waits(); }
+  void Sent() override { script_->Sent(); }
+  void Took(size_t which, const std::vector<double>& values) override;
+  void Moved() override { script_->Moved(); }
+
   void Begin(size_t motion) override;
   runtime::sessions::Progress Tick() override;
   void Halt() override;
@@ -54,17 +69,17 @@ class Performer final : public runtime::sessions::Motions, public choreo::Senses
   size_t Pick(size_t count) override { return random_() % count; }
   std::optional<std::vector<double>> Choose(const choreo::Node& message) override;
 
- private:
   const choreo::Cast& cast_;
   SceneState& scene_;
   MotionLibrary& library_;
   std::mt19937_64& random_;
-  Began began_;
-  Over over_;
+  Audience& audience_;
+  choreo::RobotId robot_;
   std::optional<MotionRun> motion_;
   std::string problem_;
   expr::Numeric::Point now_;
-  std::unique_ptr<runtime::sessions::Program> program_;
+  std::unique_ptr<runtime::sessions::Program> script_;
+  std::vector<runtime::sessions::Expected> cases_;  // of the present step
   std::optional<runtime::sessions::Session> session_;
 };
 

@@ -146,22 +146,21 @@ void StageRecorder::Event(double time, const json& event) {
   writer_.Message(Channel("/rondo/event", trace::kRecord, "json"), Nanoseconds(time), event.dump());
 }
 
-void StageRecorder::Message(double time, const runtime::sessions::Frame& offer) {
+void StageRecorder::Message(double time, uint32_t from, uint32_t to, const std::string& label,
+                            const std::vector<double>& values) {
   Event(time, {{"kind", "message"},
-               {"from", graph_.NameOf(choreo::RobotId(offer.from))},
-               {"to", graph_.NameOf(choreo::RobotId(offer.to))},
-               {"label", offer.label},
-               {"values", offer.values}});
+               {"from", graph_.NameOf(choreo::RobotId(from))},
+               {"to", graph_.NameOf(choreo::RobotId(to))},
+               {"label", label},
+               {"values", values}});
 }
 
 void StageRecorder::Begins(double time, const MotionCode& motion) {
-  Event(time, {{"kind", "begins"},
-               {"robot", graph_.NameOf(choreo::RobotId(motion.robot))},
-               {"motion", motion.text}});
+  Event(time, {{"kind", "begins"}, {"robot", graph_.NameOf(choreo::RobotId(motion.robot))}, {"motion", motion.call}});
 }
 
 void StageRecorder::Ends(double time, const MotionCode& motion) {
-  Event(time, {{"kind", "ends"}, {"robot", graph_.NameOf(choreo::RobotId(motion.robot))}, {"motion", motion.text}});
+  Event(time, {{"kind", "ends"}, {"robot", graph_.NameOf(choreo::RobotId(motion.robot))}, {"motion", motion.call}});
 }
 
 void StageRecorder::Incident(double time, Wrong wrong, const std::string& what) {
@@ -169,7 +168,8 @@ void StageRecorder::Incident(double time, Wrong wrong, const std::string& what) 
 }
 
 void StageRecorder::Scene(double time, const SceneState& scene) {
-  if (time < shown_ + kShow && shown_ >= 0) return;
+  constexpr double kMoment = 1e-9;
+  if (time < shown_ + kShow - kMoment && shown_ >= 0) return;
   Show(time, scene);
 }
 

@@ -8,7 +8,6 @@
 
 #include "choreo/graph/graph.h"
 #include "robot/contact/solid.h"
-#include "runtime/sessions/session.h"
 #include "sim/motions/motion_code.h"
 #include "sim/motions/report.h"
 #include "trace/writer.h"
@@ -26,7 +25,7 @@ class StageRecorder {
   StageRecorder(trace::Writer& writer, const choreo::Graph& graph, expr::Arena& arena, const nlohmann::json& run);
 
   /// Say what happens, at this moment in seconds since the run began.
-  void Message(double time, const runtime::sessions::Frame& offer);
+  void Message(double time, uint32_t from, uint32_t to, const std::string& label, const std::vector<double>& values);
   void Begins(double time, const MotionCode& motion);
   void Ends(double time, const MotionCode& motion);
   void Incident(double time, Wrong wrong, const std::string& what);
