@@ -24,7 +24,7 @@ TEST(Registry, EveryKindIsExplained) {
     EXPECT_FALSE(info.example.empty()) << info.id;
     const std::string_view verb = info.verb.substr(0, info.verb.find(' '));
     EXPECT_TRUE(verb == "check" || verb == "prove" || verb == "solve" || verb == "certify" ||
-                verb == "explore" || verb == "simulate" || verb == "reach")
+                verb == "explore" || verb == "simulate" || verb == "reach" || verb == "build")
         << info.id;
   }
 }

@@ -11,8 +11,8 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-EXAMPLES = ROOT / "examples/choreo"
+from motion_faults import EXAMPLES, FAULTS, ROOT, faulty, stage
+
 RONDO = str(pathlib.Path(sys.argv[1]).resolve())
 results = {"passed": 0, "failed": 0}
 
@@ -28,30 +28,6 @@ def prove(path, *args):
     return done.returncode, json.loads(done.stdout)
 
 
-# Name, example, what is replaced by what, the kind that has to be reported.
-FAULTS = [
-    ("the carrier drives too far", "handover", "carrier: MoveCart(0, 0, 0, 0.5 m, 5 s)", "carrier: MoveCart(0, 0, 0, 0.65 m, 5 s)", "choreo-region"),
-    ("both drive too far, together", "handover", "thread region x > 0.558 m { carrier: MoveCart(0, 0, 0, 0.5 m, 5 s) carrier: Idle() }", "thread region x > 0.558 m { carrier: MoveCart(0, 0, 90 deg, 0.5 m, 5 s) carrier: Idle() }", "choreo-precondition"),
-    ("a region too small", "fetch", "cylinder(translate(2 m, 0, 0), 0.26 m", "cylinder(translate(2 m, 0, 0), 0.20 m", "choreo-region"),
-    ("regions that overlap", "fetch", "not in cylinder(translate(2 m, 0, 0), 0.27 m", "not in cylinder(translate(2 m, 0, 0), 0.25 m", "choreo-region"),
-    ("a wrong start", "fetch", "cart: MoveFromTo(point(0, 0, 0), point(2 m, 0, 0), 0)", "cart: MoveFromTo(point(0.5 m, 0, 0), point(2 m, 0, 0), 0)", "choreo-precondition"),
-    ("guards that are not total", "producer", "when sensor.colour <= 0.5", "when sensor.colour <= 0.4", "choreo-no-alternative"),
-    ("lanes too close", "lanes4", "at (0, 650 mm, 0)", "at (0, 400 mm, 0)", "choreo-region"),
-    ("a wrong angle", "twist", "arm: Rotate(0, 120 deg - 0.35 rad,", "arm: Rotate(0, 120 deg - 0.30 rad,", "choreo-precondition"),
-    ("a circle too small", "twist", "Swipe(0, 0, 0, 0.5 m,", "Swipe(0, 0, 0, 0.3 m,", "choreo-region"),
-    ("a leg at another angle", "underpass", "carrier: MoveCart(0.67 m, 0, 45 deg, 0.5 m)", "carrier: MoveCart(0.67 m, 0, 60 deg, 0.5 m)", "choreo-precondition"),
-    ("into the pillar", "underpass", "box(translate(-0.5 m, 0.5 m, 0) *", "box(translate(-0.3 m, 0.15 m, 0) *", "choreo-collision"),
-    ("into the sensor", "sorting", "carrier: MoveCart(0, 0, 0, 0.5 m)", "carrier: MoveCart(0, 0, 0, 0.7 m)", "choreo-region"),
-    ("a wrong argument in a process", "handover", "\n  MoveCart(0, 0, 0, 0.5 m, 5 s)\n", "\n  MoveCart(0, 0, 0, 0.4 m, 5 s)\n", "process-argument"),
-    ("a message that is missing", "handover", "\n  send carrier.taken()\n", "\n", "process-step"),
-    ("a guard of a process that is too strong", "fetch", "while dist((x, y), (0, 0)) > 0.1 m { MoveFromTo(point(2 m", "while dist((x, y), (0, 0)) > 2.5 m { MoveFromTo(point(2 m", "process-condition"),
-    ("an arm that stands too low", "first", "cylinder(self, 10 cm, 15 cm, 40 cm)", "cylinder(self, 25 cm, 5 cm, 40 cm)", "choreo-collision"),
-    ("a cart that turns into the arm", "first", "cart: Move(0, 1 m)", "cart: Move(0, 1.3 m)", "choreo-precondition"),
-    ("an arm that reaches too low", "shuttle", "translate(0, 0, 30 cm) * rotate_z(a)", "translate(0, 0, 10 cm) * rotate_z(a) * translate(20 cm, 0, 0)", "choreo-collision"),
-    ("a contract that cannot be kept", "shuttle", "post x == to and y == 0", "post x == to and y == 1 m", "choreo-contract"),
-    ("a body larger than its footprint", "lanes4", "inner = 150 mm, outer = 250 mm", "inner = 350 mm, outer = 350 mm", "choreo-region"),
-]
-
 for example in sorted(EXAMPLES.glob("*.rondo")):
     if example.read_text().split("\n", 1)[0] != "# check: ok":
         continue
@@ -61,22 +37,13 @@ for example in sorted(EXAMPLES.glob("*.rondo")):
           f"status {status}: " + "; ".join(d["message"] for d in report["diagnostics"]))
 
 with tempfile.TemporaryDirectory() as folder:
-    # Faults, beside the models that the examples import.
-    (pathlib.Path(folder) / "models").symlink_to(ROOT / "models")
-    place = pathlib.Path(folder) / "examples/choreo"
-    place.mkdir(parents=True)
-    models = {m.name: m.read_text() for m in (ROOT / "models").glob("*.rondo")}
+    place = stage(folder)
     for name, example, old, new, kind in FAULTS:
         if example == "sorting" and "RONDO_CASES" not in os.environ:
             continue  # half a minute under sanitizers
-        text = (EXAMPLES / f"{example}.rondo").read_text()
-        if old not in text:  # in a model
-            text = re.sub(r'import "../../models/(.*)"\n', lambda m: models[m.group(1)], text)
-        check(name, old in text, "nothing to replace")
+        text = faulty(example, old, new, kind)
+        check(name, text is not None, "nothing to replace")
         path = place / f"{example}.rondo"
-        text = text.replace(old, new)
-        if not kind.startswith("process-"):
-            text = text.split("\nprocess ")[0] + "\n"
         path.write_text(text)
         status, report = prove(path, "--timeout", "5", "--no-certify")
         kinds = {d["kind"] for d in report["diagnostics"]}

@@ -10,6 +10,7 @@
 #include "sim/motions/contacts.h"
 #include "sim/motions/disturbances.h"
 #include "sim/motions/performer.h"
+#include "sim/motions/promises.h"
 
 namespace rondo::sim::motions {
 namespace {
@@ -35,7 +36,9 @@ class ChoreographyRun final : public Audience {
         recorder_(recorder),
         random_(options.seed),
         scene_(world_),
-        library_(graph_, arena_, scene_) {}
+        library_(graph_, arena_, scene_),
+        places_(cast),
+        promises_(cast, scene_, random_) {}
 
   base::Result<ChoreographyReport> Go() {
     if (!Place()) return base::Error{"no state was found in which the choreography may begin"};
@@ -100,6 +103,7 @@ class ChoreographyRun final : public Audience {
     if (miss > Condition::kTolerance)
       Tell(Wrong::kPrecondition,
            fmt::format("the precondition of `{}` does not hold where it begins", motion.code().text));
+    places_.Moves(choreo::RobotId(motion.code().robot));
     if (recorder_ != nullptr) recorder_->Begins(time_, motion.code());
   }
 
@@ -110,6 +114,13 @@ class ChoreographyRun final : public Audience {
   void Takes(choreo::RobotId robot, const Expected& message, const std::vector<double>& values) override {
     ++report_.messages;
     if (recorder_ != nullptr) recorder_->Message(time_, message.from, robot.value, message.label, values);
+    const choreo::RobotId from(message.from);
+    const auto sent = places_.Says(from, choreo::Action::Kind::kSend, robot, message.label);
+    const auto taken = places_.Says(robot, choreo::Action::Kind::kReceive, from, message.label);
+    if (sent.empty() || taken.empty())
+      Tell(Wrong::kOrder, fmt::format("`{}` from `{}` to `{}` is not what the choreography says comes next",
+                                      message.label, graph_.NameOf(from), graph_.NameOf(robot)));
+    promises_.Look(scene_, sent, values, [this](Wrong wrong, const std::string& what) { Tell(wrong, what); });
   }
 
   // Lets everything happen that can happen at this instant. False if that has no end.
@@ -181,7 +192,11 @@ class ChoreographyRun final : public Audience {
       if (!motion->broken().empty()) Tell(Wrong::kContract, motion->broken());
       if (!motion->lost().empty() && report_.lost.empty()) report_.lost = motion->lost();
     }
-    contacts_->Look(scene_, motions, [this](Wrong wrong, const std::string& what) { Tell(wrong, what); });
+    const auto tell = [this](Wrong wrong, const std::string& what) { Tell(wrong, what); };
+    contacts_->Look(scene_, motions, tell);
+    for (const MotionRun* motion : motions) {
+      if (motion != nullptr) promises_.Look(scene_, *motion, places_, tell);
+    }
   }
 
   bool End(Curtain curtain) {
@@ -258,6 +273,8 @@ class ChoreographyRun final : public Audience {
   std::mt19937_64 random_;
   SceneState scene_;
   MotionLibrary library_;
+  Places places_;
+  Promises promises_;
   std::optional<Disturbances> disturbances_;
   std::optional<Contacts> contacts_;
   std::vector<std::unique_ptr<Performer>> performers_;

@@ -14,6 +14,16 @@ std::string_view Name(Wrong wrong) {
       return "assumption";
     case Wrong::kContract:
       return "contract";
+    case Wrong::kRegion:
+      return "region";
+    case Wrong::kFork:
+      return "fork";
+    case Wrong::kGuarantee:
+      return "guarantee";
+    case Wrong::kMessage:
+      return "message";
+    case Wrong::kOrder:
+      return "order";
     case Wrong::kChoice:
       return "choice";
     case Wrong::kWaiting:

@@ -14,6 +14,11 @@ enum class Wrong : uint8_t {
   kPrecondition,  ///< a motion begins where it may not
   kAssumption,    ///< what a motion assumes of others does not hold
   kContract,      ///< a controller does not keep the contract of its motion
+  kRegion,        ///< the space that a motion asks for is not in the region of its thread
+  kFork,          ///< the space that a motion asks for is in the region of another thread
+  kGuarantee,     ///< a thread does not keep what it guarantees
+  kMessage,       ///< the guard of a message does not hold, or it does not carry what it promises
+  kOrder,         ///< a message is not what the choreography says comes next
   kChoice,        ///< no alternative of a choice holds, or a value does not exist
   kWaiting,       ///< time passes for a robot that makes no motion
   kStuck,         ///< everybody waits for a message that nobody sends
