@@ -131,7 +131,10 @@ Step ProcessScript::Next() {
   return step;
 }
 
-bool ProcessScript::Waits() const { return flow_[flow_[at_].next].kind == FlowKind::kReceive; }
+bool ProcessScript::Waits() const {
+  const FlowNode& node = flow_[at_];
+  return node.kind == FlowKind::kMove && flow_[node.next].kind == FlowKind::kReceive;
+}
 
 void ProcessScript::Took(size_t which, const std::vector<double>& values) {
   const FlowCase& c = flow_[at_].cases[which];

@@ -69,12 +69,40 @@ Step ProjectionScript::Next() {
         break;
       case Action::Kind::kMove:
         step.motion = InstanceOf(node, type_.robot);
-        if (step.kind != Step::Kind::kReceive) only_ = to;
+        only_ = to;
         break;
     }
   }
   if (step.kind == Step::Kind::kEnd && step.motion) step.kind = Step::Kind::kMove;
+  if (step.kind == Step::Kind::kReceive && step.motion) Behind(step);
   return step;
+}
+
+// Whoever listens and may move begins to move, and listens on: for what comes instead, and, if the motion may be over at
+// once, for what comes behind it.
+void ProjectionScript::Behind(Step& step) {
+  step.again = false;
+  StateId from = at_, to = only_;
+  for (size_t i = 0; i < type_.states.size(); ++i) {
+    const LocalState& moving = At(from);
+    const auto move = std::ranges::find_if(
+        moving.next, [](const auto& n) { return n.first.kind == Action::Kind::kMove; });
+    const Node& node = graph_[moving.nodes.at(move->first)[0]];
+    const Duration& d = std::ranges::find(node.parts, type_.robot, &Part::robot)->duration;
+    if (!d.interruptible || !d.least.IsZero()) return;
+    const LocalState& state = At(to);
+    step.ends = step.ends || state.ends;
+    std::optional<StateId> next;
+    for (const auto& [action, behind] : state.next) {
+      if (action.kind == Action::Kind::kMove) next = behind;
+      if (action.kind != Action::Kind::kReceive) continue;
+      step.cases.push_back({action.peer.value, action.label});
+      cases_.push_back(behind);
+    }
+    if (!next) return;
+    from = to;
+    to = *next;
+  }
 }
 
 bool ProjectionScript::Waits() const {

@@ -21,6 +21,7 @@ class ProjectionScript final : public runtime::sessions::Program {
 
  private:
   bool Choose(std::string& problem);
+  void Behind(runtime::sessions::Step& step);
   const LocalState& At(StateId s) const { return type_.states[s.index()]; }
 
   const Graph& graph_;

@@ -34,7 +34,7 @@ bool Session::Advance(Time now) {
         on = Send(now);
         break;
       case Step::Kind::kReceive:
-        on = Receive();
+        on = Receive(now);
         break;
       case Step::Kind::kEnd:
         ended_ = true;
@@ -56,12 +56,24 @@ std::optional<Time> Session::Wake() const {
   return offer_ && !taken_ ? std::optional(again_) : std::nullopt;
 }
 
+bool Session::MayBeInterrupted() const {
+  return !moving_ || progress_ == Progress::kOpen || progress_ == Progress::kReady;
+}
+
+bool Session::ended() const {
+  if (ended_) return true;
+  size_t which = 0;
+  return step_ && step_->kind == Step::Kind::kReceive && step_->ends && MayBeInterrupted() &&
+         Offered(which) == nullptr;
+}
+
 bool Session::idle() const {
-  if (ended_ || failed_) return true;
+  if (ended() || failed_) return true;
   if (!step_ || step_->kind != Step::Kind::kReceive) return false;
   size_t which = 0;
   if (Offered(which) != nullptr) return false;
-  return !moving_ || progress_ == Progress::kOpen || progress_ == Progress::kReady;
+  const bool goes_on = moving_ && begun_ && !step_->again && !program_.Waits();
+  return MayBeInterrupted() && !goes_on;
 }
 
 Session::Went Session::Fail(std::string why) {
@@ -131,16 +143,24 @@ const Frame* Session::Offered(size_t& which) const {
   return nullptr;
 }
 
-Session::Went Session::Receive() {
+Session::Went Session::Receive(Time now) {
   if (moving_ && !halting_) {
     Continues();
     if (progress_ == Progress::kFailed) return Fail("a motion failed");
   }
   size_t which = 0;
   if (Offered(which) == nullptr) {
+    // At the instant at which it begins, nobody knows yet whether a message comes.
+    const bool onward = begun_ && !step_->again;
+    if (onward && (!moving_ || (progress_ == Progress::kReady && now > began_ && !program_.Waits()))) {
+      program_.Moved();
+      Done();
+      return Went::kOn;
+    }
     if (moving_ || !step_->motion) return Went::kNowhere;
     motions_.Begin(*step_->motion);
-    moving_ = true;
+    moving_ = begun_ = true;
+    began_ = now;
     Continues();
     return Went::kNowhere;
   }

@@ -46,7 +46,11 @@ struct Step {
   std::string label;              ///< kSend; kFault: what is the matter
   std::vector<double> values;     ///< kSend
   std::vector<Expected> cases{};  ///< kReceive
-  std::optional<size_t> motion;   ///< kMove; kReceive: what it does meanwhile, again and again
+  std::optional<size_t> motion;   ///< kMove; kReceive: what it does meanwhile
+  /// kReceive: whether it does that again and again until a message comes. If not, it has moved when the motion is over, or
+  /// some time after it has become ready to go on, and does what follows.
+  bool again = true;
+  bool ends = false;  ///< kReceive: if no message comes, it is at its end
 };
 
 /// Says what a robot does, step by step. Evaluates nothing before it is asked.
@@ -55,7 +59,8 @@ class Program {
   virtual ~Program() = default;
   /// Returns the present step. Is called once for each, when the robot may act: choices read what it senses then.
   virtual Step Next() = 0;
-  /// Reports whether behind the present motion the robot waits for others before it decides anything.
+  /// Reports, of a step with a motion that is not done again, whether the robot waits for others behind it before it decides
+  /// anything.
   virtual bool Waits() const = 0;
   /// Say that the present step is over. `Took`: by which of its cases, and what the message carried.
   virtual void Sent() = 0;
@@ -100,8 +105,8 @@ class Session {
   /// Returns when `Advance` has something to do even if nothing arrives and no motion gets on; nothing: never.
   std::optional<Time> Wake() const;
 
-  /// Reports whether the program is at its end. A motion that anybody may interrupt may go on then.
-  bool ended() const { return ended_; }
+  /// Reports whether the program is at its end, unless a message comes. A motion that anybody may interrupt may go on then.
+  bool ended() const;
   /// Reports whether a motion is under way.
   bool moving() const { return moving_; }
   /// Reports that nothing more happens here, because of a fault of the program or a motion that failed; `fault` is why.
@@ -117,11 +122,12 @@ class Session {
   enum class Went : uint8_t { kOn, kNowhere };
   Went Move();
   Went Send(Time now);
-  Went Receive();
+  Went Receive(Time now);
   Went Fail(std::string why);
   void Done() { step_.reset(); }
   bool Stopped();
   bool Continues();
+  bool MayBeInterrupted() const;
   const Frame* Offered(size_t& which) const;
 
   uint64_t session_;
@@ -134,6 +140,7 @@ class Session {
   bool moving_ = false;   // a motion is under way, of this step or still of one before
   bool begun_ = false;    // it is this step's
   bool halting_ = false;  // and has been told to stop
+  Time began_ = 0;        // when this step's did
   Progress progress_ = Progress::kStopped;
   bool ended_ = false, failed_ = false;
   std::string fault_;

@@ -199,6 +199,21 @@ class ChoreographyRun final : public Audience {
     }
   }
 
+  static bool Stands(const Performer& performer) {
+    return !performer.session().ended() && !performer.session().moving();
+  }
+  bool SomebodyStands() const {
+    return std::ranges::any_of(performers_, [](const auto& p) { return Stands(*p); });
+  }
+
+  // A joint motion is over when one of its motions is: then the others do not last either. False if what follows has no end.
+  bool Urge() {
+    for (const auto& performer : performers_) {
+      if (MotionRun* motion = performer->motion()) motion->Urge();
+    }
+    return Settle();
+  }
+
   bool End(Curtain curtain) {
     report_.ended = curtain;
     return true;
@@ -206,7 +221,7 @@ class ChoreographyRun final : public Audience {
 
   // Does what is to be done at this instant, and tells whether the run is over.
   bool Over() {
-    if (!Settle()) {
+    if (!Settle() || (SomebodyStands() && !Urge())) {
       Tell(Wrong::kNoTime, "things happen without end, and no time passes");
       return End(Curtain::kFailed);
     }
@@ -237,8 +252,7 @@ class ChoreographyRun final : public Audience {
     if (options_.stop.StopRequested()) return End(Curtain::kInterrupted);
     if (time_ >= options_.duration) return End(Curtain::kTime);
     for (size_t r = 0; r < performers_.size(); ++r) {
-      const Session& session = performers_[r]->session();
-      if (session.ended() || session.moving()) continue;
+      if (!Stands(*performers_[r])) continue;
       Tell(Wrong::kWaiting, fmt::format("time passes for `{}`, which makes no motion",
                                         graph_.NameOf(choreo::RobotId(r))));
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <random>
 #include <string>
@@ -20,6 +21,8 @@ class MotionRun {
 
   /// Lets time pass until this many seconds after it began, and moves the robot; others stand where they are in the scene.
   void To(double seconds);
+  /// Lets the robot be content to go on from now on: somebody of its joint motion has come to an end, so that it may not last.
+  void Urge() { ready_ = std::min(ready_, std::max(time_, code_.least)); }
   /// Tells how far it is now.
   runtime::sessions::Progress progress() const;
   /// Returns the next moment, in seconds after it began, at which something of it changes of itself; infinite if none.
