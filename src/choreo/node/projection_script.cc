@@ -78,30 +78,28 @@ Step ProjectionScript::Next() {
   return step;
 }
 
-// Whoever listens and may move begins to move, and listens on: for what comes instead, and, if the motion may be over at
-// once, for what comes behind it.
+// Whoever listens and may move begins to move, and listens on: for what comes instead of the motion, at once, and for what
+// comes behind it, also behind further motions if these may be over as they begin. These messages are different ones: else
+// there is no projection.
 void ProjectionScript::Behind(Step& step) {
   step.again = false;
-  StateId from = at_, to = only_;
+  StateId at = only_;
   for (size_t i = 0; i < type_.states.size(); ++i) {
-    const LocalState& moving = At(from);
-    const auto move = std::ranges::find_if(
-        moving.next, [](const auto& n) { return n.first.kind == Action::Kind::kMove; });
-    const Node& node = graph_[moving.nodes.at(move->first)[0]];
-    const Duration& d = std::ranges::find(node.parts, type_.robot, &Part::robot)->duration;
-    if (!d.interruptible || !d.least.IsZero()) return;
-    const LocalState& state = At(to);
+    const LocalState& state = At(at);
     step.ends = step.ends || state.ends;
     std::optional<StateId> next;
-    for (const auto& [action, behind] : state.next) {
-      if (action.kind == Action::Kind::kMove) next = behind;
-      if (action.kind != Action::Kind::kReceive) continue;
-      step.cases.push_back({action.peer.value, action.label});
-      cases_.push_back(behind);
+    for (const auto& [action, to] : state.next) {
+      if (action.kind == Action::Kind::kReceive) {
+        step.cases.push_back({action.peer.value, action.label});
+        cases_.push_back(to);
+      }
+      if (action.kind != Action::Kind::kMove) continue;
+      const Node& node = graph_[state.nodes.at(action)[0]];
+      const Duration& d = std::ranges::find(node.parts, type_.robot, &Part::robot)->duration;
+      if (d.interruptible && d.least.IsZero()) next = to;
     }
     if (!next) return;
-    from = to;
-    to = *next;
+    at = *next;
   }
 }
 

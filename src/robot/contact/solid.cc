@@ -18,7 +18,7 @@ using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
 
 /// Is one convex part: twelve numbers say where its frame is, the others what it is like.
 struct Part {
-  ShapeKind kind;
+  ShapeKind kind = ShapeKind::kSphere;
   size_t first = 0, count = 0;  // of its numbers among all
   std::vector<double> made;     // of which numbers the geometry was made
   fcl::Vector3d middle = fcl::Vector3d::Zero();  // of the geometry, in the frame of the shape
@@ -77,7 +77,9 @@ bool Collect(Arena& arena, const Shape& shape, std::vector<Part>& parts, std::ve
   if (shape.kind == ShapeKind::kUnion)
     return std::ranges::all_of(shape.parts, [&](const Shape& p) { return Collect(arena, p, parts, numbers); });
   if (shape.kind == ShapeKind::kHalfSphere || shape.kind == ShapeKind::kIntersection) return false;
-  Part part{shape.kind, numbers.size()};
+  Part part;
+  part.kind = shape.kind;
+  part.first = numbers.size();
   for (const Vector& row : shape.frame.rotation) numbers.insert(numbers.end(), row.begin(), row.end());
   numbers.insert(numbers.end(), shape.frame.origin.begin(), shape.frame.origin.end());
   numbers.insert(numbers.end(), shape.sizes.begin(), shape.sizes.end());

@@ -18,6 +18,7 @@ void Session::Hear(const Frame& frame) {
 }
 
 bool Session::Advance(Time now) {
+  now_ = now;
   bool went = false;
   while (!failed_ && !ended_) {
     if (!step_) {
@@ -31,10 +32,10 @@ bool Session::Advance(Time now) {
         on = Move();
         break;
       case Step::Kind::kSend:
-        on = Send(now);
+        on = Send();
         break;
       case Step::Kind::kReceive:
-        on = Receive(now);
+        on = Receive();
         break;
       case Step::Kind::kEnd:
         ended_ = true;
@@ -113,16 +114,16 @@ Session::Went Session::Move() {
   return Went::kOn;
 }
 
-Session::Went Session::Send(Time now) {
+Session::Went Session::Send() {
   if (!offer_) {
     offer_ = Frame{Frame::Kind::kOffer, session_, self_, step_->to, sent_[step_->to]++, step_->label, step_->values};
     taken_ = false;
-    again_ = now;
+    again_ = now_;
   }
   if (!taken_) {
-    if (now >= again_) {
+    if (now_ >= again_) {
       out_.push_back(*offer_);
-      again_ = now + resend_;
+      again_ = now_ + resend_;
     }
     if (moving_ && Continues() && progress_ == Progress::kFailed) return Fail("a motion failed");
     return Went::kNowhere;
@@ -143,7 +144,7 @@ const Frame* Session::Offered(size_t& which) const {
   return nullptr;
 }
 
-Session::Went Session::Receive(Time now) {
+Session::Went Session::Receive() {
   if (moving_ && !halting_) {
     Continues();
     if (progress_ == Progress::kFailed) return Fail("a motion failed");
@@ -152,7 +153,7 @@ Session::Went Session::Receive(Time now) {
   if (Offered(which) == nullptr) {
     // At the instant at which it begins, nobody knows yet whether a message comes.
     const bool onward = begun_ && !step_->again;
-    if (onward && (!moving_ || (progress_ == Progress::kReady && now > began_ && !program_.Waits()))) {
+    if (onward && (!moving_ || (progress_ == Progress::kReady && now_ > began_ && !program_.Waits()))) {
       program_.Moved();
       Done();
       return Went::kOn;
@@ -160,7 +161,7 @@ Session::Went Session::Receive(Time now) {
     if (moving_ || !step_->motion) return Went::kNowhere;
     motions_.Begin(*step_->motion);
     moving_ = begun_ = true;
-    began_ = now;
+    began_ = now_;
     Continues();
     return Went::kNowhere;
   }

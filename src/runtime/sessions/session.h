@@ -121,8 +121,8 @@ class Session {
  private:
   enum class Went : uint8_t { kOn, kNowhere };
   Went Move();
-  Went Send(Time now);
-  Went Receive(Time now);
+  Went Send();
+  Went Receive();
   Went Fail(std::string why);
   void Done() { step_.reset(); }
   bool Stopped();
@@ -141,6 +141,7 @@ class Session {
   bool begun_ = false;    // it is this step's
   bool halting_ = false;  // and has been told to stop
   Time began_ = 0;        // when this step's did
+  Time now_ = 0;
   Progress progress_ = Progress::kStopped;
   bool ended_ = false, failed_ = false;
   std::string fault_;

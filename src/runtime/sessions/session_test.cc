@@ -41,8 +41,8 @@ class List : public Program {
   }
   bool Waits() const override { return steps_.size() > 1 && steps_[1].kind == Step::Kind::kReceive; }
   void Sent() override { Drop("sent " + steps_.front().label); }
-  void Took(size_t which, const std::vector<double>& values) override {
-    std::string text = "took " + steps_.front().cases[which].label;
+  void Took(size_t taken, const std::vector<double>& values) override {
+    std::string text = "took " + steps_.front().cases[taken].label;
     for (const double v : values) text += " " + std::to_string(static_cast<int>(v));
     Drop(text);
   }
@@ -172,6 +172,59 @@ TEST(Session, AMotionGoesOnUntilSomethingEndsIt) {
   Settle(2, a, b);
   EXPECT_EQ(a.hand.halts, 1);
   EXPECT_EQ(a.hand.begun, (std::vector<size_t>{1, 3}));
+}
+
+TEST(Session, AMessageIsNotSentBeforeTheMotionHasStopped) {
+  Robot a(0, {Moving(1), Sending(1, "m")}), b(1, {Receiving({{0, "m"}})});
+  a.hand.after = Progress::kReady;
+  a.hand.stops = false;
+  Settle(0, a, b);
+  EXPECT_EQ(b.program.did, Did{"took m"});
+  EXPECT_EQ(a.program.did, Did{"moved"});
+  a.hand.now = Progress::kStopped;
+  Settle(1, a, b);
+  EXPECT_EQ(a.program.did, (Did{"moved", "sent m"}));
+}
+
+// It listens, and if nothing comes it has moved.
+Step Onward(std::vector<Expected> cases, size_t motion) {
+  Step step = Receiving(std::move(cases), motion);
+  step.again = false;
+  return step;
+}
+
+TEST(Session, IfNoMessageComesItHasMoved) {
+  Robot a(0, {Onward({{1, "m"}}, 4), Moving(5)});
+  a.hand.after = Progress::kReady;
+  a.session.Advance(0);
+  a.session.Advance(0);
+  EXPECT_EQ(a.program.did, Did{});  // a message may come at this instant
+  a.session.Advance(1);
+  EXPECT_EQ(a.program.did.front(), "moved");
+  Robot b(0, {Onward({{1, "m"}}, 4), Moving(5)});
+  b.session.Advance(0);
+  b.session.Advance(1);
+  EXPECT_EQ(b.program.did, Did{});
+  b.hand.now = Progress::kStopped;
+  b.session.Advance(2);
+  EXPECT_EQ(b.program.did.front(), "moved");
+  EXPECT_EQ(b.hand.begun, (std::vector<size_t>{4, 5}));
+}
+
+TEST(Session, WhoMayBeAtTheEndIsItUnlessAMessageComes) {
+  Step last = Onward({{0, "m"}}, 4);
+  last.ends = true;
+  Robot a(0, {Sending(1, "m")}), b(1, {last});
+  b.session.Advance(0);
+  EXPECT_FALSE(b.session.ended());  // it has to go on
+  b.hand.now = Progress::kOpen;
+  b.session.Advance(0);
+  EXPECT_TRUE(b.session.ended());
+  a.session.Advance(0);
+  for (const Frame& f : a.session.TakeFrames()) b.session.Hear(f);
+  EXPECT_FALSE(b.session.ended());
+  b.session.Advance(0);
+  EXPECT_EQ(b.program.did, Did{"took m"});
 }
 
 TEST(Session, WhoWaitsListensAsSoonAsItsMotionIsOpen) {
