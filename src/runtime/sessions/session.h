@@ -7,7 +7,7 @@
 #include <vector>
 
 /// Runs what one robot does of a choreography: synchronous messages and motions that messages may end. A deterministic
-/// machine: no thread, clock, socket or random number is in it (docs/choreographies-that-run.md).
+/// machine: no thread, clock, socket or random number is in it (docs/choreographies.md).
 namespace rondo::runtime::sessions {
 
 /// Counts nanoseconds since the session began, on the robot's own clock.
