@@ -160,8 +160,10 @@ for name, (content, says) in others.items():
     file.write_bytes(content)
     done = rondo("simulate", LINEFORM, "--fleet", str(file))
     check(f"a fleet that is {name}", done.returncode == 1 and len(done.stderr.splitlines()) < 12, done.stderr[:300])
-done = rondo("simulate", "models/room.rondo")
+done = rondo("explore", "models/room.rondo")
 check("a choreography for a program", done.returncode == 1 and "is a file of robots and choreographies" in done.stderr, done.stderr)
+done = rondo("simulate", "models/room.rondo")
+check("no choreography", done.returncode == 1 and "there is no choreography to simulate" in done.stderr, done.stderr)
 # Text that is none of the language, long, on one line, deeply nested, with signs that terminals obey.
 for name, text in (("signs", "$ % ^ ~ ` " * 20_000), ("words", "some words that mean nothing at all\n" * 5_500), ("word", "D" * 200_000), ("brackets", "(" * 200_000), ("one", "invariant x: " + "a + " * 50_000 + "a\n"),
                    ("braces", "{ } " * 50_000), ("strings", '"' * 200_000), ("indented", "".join(" " * (i % 40) + "x\n" for i in range(9_000))),
