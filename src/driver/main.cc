@@ -13,6 +13,7 @@
 
 #include "base/version.h"
 #include "driver/terminal.h"
+#include "driver/usage.h"
 #include "driver/verbs.h"
 #include "solve/z3/z3_solver.h"
 
@@ -24,18 +25,11 @@ namespace {
 
 /// In the order of the help.
 constexpr void (*kVerbs[])(CLI::App&, ExitStatus&) = {
-    AddCheckVerb,   AddFormatVerb,  AddProveVerb,  AddExploreVerb,    AddSimulateVerb, AddRunVerb,
-    AddLaunchVerb,  AddBuildVerb,   AddDoctorVerb, AddKeysVerb,       AddReplayVerb,   AddCampaignVerb,
-    AddPlotVerb,    AddReachVerb,   AddInferVerb,  AddGraphVerb,      AddProjectVerb,  AddSolveVerb,
-    AddCertifyVerb, AddExplainVerb, AddAstVerb,    AddCompletionVerb,
+    AddNewVerb,     AddCheckVerb,   AddFormatVerb,   AddProveVerb,  AddExploreVerb,    AddSimulateVerb, AddRunVerb,
+    AddLaunchVerb,  AddBuildVerb,   AddDoctorVerb,   AddKeysVerb,   AddReplayVerb,     AddCampaignVerb, AddPlotVerb,
+    AddReachVerb,   AddInferVerb,   AddGraphVerb,    AddProjectVerb, AddSolveVerb,     AddCertifyVerb,  AddExplainVerb,
+    AddAstVerb,     AddCompletionVerb, AddHelpVerb,  AddVersionVerb,
 };
-
-// `rondo 0.2.0 (commit 0123456789)`
-std::string VersionText() {
-  const std::string commit(base::Commit());
-  return fmt::format("rondo {}{}", base::Version(),
-                     commit.empty() ? "" : fmt::format(" (commit {})", commit));
-}
 
 // A reader that went away is no error; a full disk is.
 ExitStatus Written(ExitStatus status) {
@@ -45,6 +39,12 @@ ExitStatus Written(ExitStatus status) {
 }
 
 }  // namespace
+
+std::string VersionText() {
+  const std::string commit(base::Commit());
+  return fmt::format("rondo {}{}", base::Version(),
+                     commit.empty() ? "" : fmt::format(" (commit {})", commit));
+}
 
 int Main(int argc, char** argv) {
   // A reader that goes away (`rondo ... | head`) ends the output, not the program with a signal.
@@ -58,9 +58,21 @@ int Main(int argc, char** argv) {
       "\n"
       "exit status: 0 established, 1 wrong input, refuted or not inductive, 2 usage, 3 unknown, 4 a bug of ours");
   for (const auto add : kVerbs) add(app, status);
+  const std::string first = argc > 1 ? argv[1] : "-";
+  const bool known = !app.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == first; }).empty();
+  if (!first.starts_with('-') && !known) {
+    PrintFailure(NoSuchVerb(app, first));
+    return static_cast<int>(Written(ExitStatus::kUsage));
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    const std::string why =
+        error.get_exit_code() == 0 ? "" : NoSuchOption(app, std::vector<std::string>(argv + 1, argv + argc));
+    if (!why.empty()) {
+      PrintFailure(why);
+      return static_cast<int>(Written(ExitStatus::kUsage));
+    }
     std::ostringstream out, wrong;
     const int code = app.exit(error, out, wrong);
     Print(out.str());

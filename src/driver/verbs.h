@@ -10,6 +10,7 @@ class App;
 /// runs, it leaves its exit status in `status`.
 namespace rondo::driver {
 
+void AddNewVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddCheckVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddFormatVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddAstVerb(CLI::App& app, verdict::ExitStatus& status);
@@ -32,5 +33,7 @@ void AddSolveVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddCertifyVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddExplainVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddCompletionVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddHelpVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddVersionVerb(CLI::App& app, verdict::ExitStatus& status);
 
 }  // namespace rondo::driver

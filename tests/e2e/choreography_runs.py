@@ -66,7 +66,7 @@ def faults(folder):
         path = place / f"{example}.rondo"
         path.write_text(faulty(example, old, new, kind))
         # Of some only every fifth run shows them.
-        status, report = simulate(path, "--runs", RUNS or 12, "--duration", 30)
+        status, report = simulate(path, "--runs", RUNS or 6, "--duration", 30)
         if kind == "choreo-contract":
             check(name, status == 3 and set(report["ended"]) == {"lost"} and "may end" in report["lost"], report)
             continue
