@@ -6,6 +6,7 @@
 #include <array>
 
 #include "lang/expr_parser_depth.h"
+#include "lang/suggest.h"
 
 namespace rondo::lang {
 
@@ -38,8 +39,32 @@ diag::Diagnostic& ExprParser::Unexpected(std::string_view expected) {
   Span span = Peek().span;
   // The end of a line is shown right behind what stands before it.
   if (span.begin == span.end && at_ > 0) span = {span.file, PreviousSpan().end, PreviousSpan().end};
-  return diagnostics_.Report(Kind::kSyntaxUnexpected, span,
-                             fmt::format("{} where {} should be", Describe(Peek()), expected));
+  auto& report = diagnostics_.Report(Kind::kSyntaxUnexpected, span,
+                                     fmt::format("{} where {} should be", Describe(Peek()), expected));
+  if (!Mistyped(Peek(), expected, report) && at_ > 0) Mistyped(stream_.tokens[at_ - 1], {}, report);
+  return report;
+}
+
+// Says which word was perhaps meant: one of those that are expected here, in backticks, or a longer one of the language.
+bool ExprParser::Mistyped(const Token& token, std::string_view expected, diag::Diagnostic& report) const {
+  std::vector<std::string> words = Words();
+  const std::string text(token.text);
+  if (token.kind != TokenKind::kName || std::ranges::find(words, text) != words.end()) return false;
+  std::vector<std::string> here;
+  for (size_t at = expected.find('`'); at != std::string_view::npos;) {
+    const size_t end = expected.find('`', at + 1);
+    if (end == std::string_view::npos) break;
+    here.emplace_back(expected.substr(at + 1, end - at - 1));
+    at = expected.find('`', end + 1);
+  }
+  // Names of people's own are near to short words all too often.
+  constexpr size_t kShort = 4, kLong = 6;
+  std::erase_if(words, [](const std::string& word) { return word.size() < kShort; });
+  std::string near = text.size() > 1 ? Suggest(text, here) : std::string();
+  if (near.empty() && text.size() >= kShort) near = Suggest(text, words, text.size() < kLong ? 1 : 2);
+  if (near.empty()) return false;
+  report.Help(fmt::format("did you mean `{}`?", near)).Fix(token.span, near);
+  return true;
 }
 
 bool ExprParser::Expect(std::string_view text, std::string_view after) {

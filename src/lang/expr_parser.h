@@ -33,6 +33,8 @@ class ExprParser {
 
   /// Reports whether the word cannot be the name of a variable in this language.
   virtual bool IsReserved(std::string_view word) const = 0;
+  /// Returns the words of the language that somebody may have mistyped.
+  virtual std::vector<std::string> Words() const { return {}; }
   /// Reports whether the word may follow a literal number as its unit.
   virtual bool IsUnit(std::string_view /*word*/) const { return false; }
   /// Reports whether this language has `a if c else b`.
@@ -42,6 +44,8 @@ class ExprParser {
   /// Is called where an expression must go on: languages in which lines end here may go on in the next line.
   virtual void AllowLineBreak() {}
   virtual ~ExprParser() = default;
+
+  bool Mistyped(const Token& token, std::string_view expected, diag::Diagnostic& report) const;
 
   /// Returns the next token, or one behind it, without taking it; kEnd beyond the end.
   const Token& Peek(size_t ahead = 0) const;

@@ -8,6 +8,8 @@ namespace {
 TEST(Suggest, FindsTypos) {
   EXPECT_EQ(Suggest("taget", {"position", "target"}), "target");
   EXPECT_EQ(Suggest("PSN", {"psn"}), "psn");
+  EXPECT_EQ(Suggest("per", {"eff", "pre"}), "pre");
+  EXPECT_EQ(Suggest("kyes", {"help", "keys"}), "keys");
   EXPECT_EQ(Suggest("all_task", {"all_tasks", "all_paths"}), "all_tasks");
 }
 

@@ -48,6 +48,13 @@ class Parser : public ProcessParser {
 
  protected:
   bool IsReserved(std::string_view word) const override { return IsReservedWord(word); }
+  std::vector<std::string> Words() const override {
+    std::vector<std::string> words = robot::RobotWords();
+    words.insert(words.end(), kWords.begin(), kWords.end());
+    words.insert(words.end(), kItems.begin(), kItems.end());
+    for (const char* word : {"send", "receive", "from", "else"}) words.emplace_back(word);
+    return words;
+  }
 
  private:
   // To the next item, over what belongs to this one.

@@ -1,11 +1,14 @@
 #include "koord/syntax/parser.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 
 #include "koord/syntax/foreign.h"
 #include "koord/syntax/program_parser.h"
 #include "lang/lexer.h"
+#include "lang/suggest.h"
 
 namespace rondo::koord {
 
@@ -13,15 +16,32 @@ using diag::Kind;
 using diag::Span;
 using lang::TokenKind;
 
+namespace {
+
+// Besides those that statements begin with.
+constexpr std::string_view kWords[] = {
+    "using", "def",    "actuators", "sensors", "allread", "allwrite", "local", "init",
+    "pre",   "eff",    "elif",      "else",    "in",      "and",      "or",    "not",
+    "pid",   "forall", "exists",    "implies", "true",    "false",    "True",  "False"};
+// Words only where a line begins with them, or a quantifier.
+constexpr std::string_view kPlaceWords[] = {"invariant", "assume",  "initially", "always", "response", "summary", "platform",
+                                            "explore",   "fallback", "param",    "module", "urgent",   "count"};
+
+}  // namespace
+
 bool IsReservedWord(std::string_view word) {
-  // Besides those that statements begin with.
-  static constexpr std::string_view kWords[] = {
-      "using", "def",    "actuators", "sensors", "allread", "allwrite", "local", "init",
-      "pre",   "eff",    "elif",      "else",    "in",      "and",      "or",    "not",
-      "pid",   "forall", "exists",    "implies", "true",    "false",    "True",  "False"};
   const auto begins = [&](const StmtWords& statement) { return statement.word == word; };
   return std::ranges::find(kWords, word) != std::end(kWords) ||
          (!word.empty() && std::ranges::any_of(kStmtWords, begins));
+}
+
+std::vector<std::string> Parser::Words() const {
+  std::vector<std::string> words(std::begin(kWords), std::end(kWords));
+  words.insert(words.end(), std::begin(kPlaceWords), std::end(kPlaceWords));
+  for (const StmtWords& statement : kStmtWords) {
+    if (!statement.word.empty()) words.emplace_back(statement.word);
+  }
+  return words;
 }
 
 void Parse(const diag::SourceSet& sources, diag::FileId file, Program& program,
@@ -270,7 +290,10 @@ bool Parser::ParseEventBody(EventDef& event) {
     good = EndLine("a precondition");
   }
   if (!Accept("eff")) {
-    Unexpected(event.pre.valid() ? "`eff`" : "`pre` or `eff`").Under("in an event");
+    auto& report = Unexpected(event.pre.valid() ? "`eff`" : "`pre` or `eff`").Under("in an event");
+    // It looks like an event, and was perhaps meant to be something else.
+    const std::string near = report.helps.empty() ? lang::Suggest(event.name, {"allread", "allwrite", "local", "init", "explore"}) : "";
+    if (!near.empty()) report.Help(fmt::format("`{}` is an event here; did you mean `{}`?", event.name, near));
     SkipLine();
     return false;
   }

@@ -18,6 +18,7 @@ class Parser : public lang::ExprParser {
 
  protected:
   bool IsReserved(std::string_view word) const override { return IsReservedWord(word); }
+  std::vector<std::string> Words() const override;
   bool HasConditionals() const override { return true; }
   bool HasFolds() const override { return true; }
   void AllowLineBreak() override {
@@ -53,7 +54,7 @@ class Parser : public lang::ExprParser {
   bool AtLocal() const;
   void AsRange(Stmt& stmt);
   bool IsForeign();
-  void NoAssignment(ExprId value);
+  void NoAssignment();
   void ParseIf(std::vector<Stmt>& out, bool elif);
   void ParseFor(std::vector<Stmt>& out);
   bool AtCompound() const;

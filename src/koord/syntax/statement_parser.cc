@@ -302,7 +302,7 @@ bool Parser::ParseSimple(std::vector<Stmt>& out) {
     stmt.target = {};
     return finish(StmtKind::kCall);
   }
-  NoAssignment(stmt.target);
+  NoAssignment();
   return false;
 }
 
@@ -318,11 +318,7 @@ bool Parser::IsForeign() {
 }
 
 // A value stands where a statement should be.
-void Parser::NoAssignment(ExprId value) {
-  const lang::Expr& e = pool_[value];
-  static const std::vector<std::string> kBlocks = {"atomic", "if", "elif", "else", "for"};
-  const std::string near =
-      e.kind == lang::ExprKind::kName && At(":") ? lang::Suggest(e.text, kBlocks) : std::string();
+void Parser::NoAssignment() {
   struct Sign {
     std::string_view first, second, instead;
   };
@@ -338,10 +334,7 @@ void Parser::NoAssignment(ExprId value) {
     if (At(sign.first) && (sign.second.empty() || Peek(1).text == sign.second)) instead = sign.instead;
   }
   auto& report = Unexpected("`=`").Under("a value alone does nothing");
-  if (!near.empty())
-    report.Help("did you mean `" + near + "`?");
-  else if (!instead.empty())
-    report.Help(std::string(instead));
+  if (!instead.empty() && report.helps.empty()) report.Help(std::string(instead));
 }
 
 }  // namespace rondo::koord

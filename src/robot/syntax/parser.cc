@@ -25,6 +25,15 @@ bool Contains(const std::array<std::string_view, N>& words, std::string_view wor
 
 bool IsRobotWord(std::string_view word) { return Contains(kWords, word); }
 
+std::vector<std::string> RobotWords() {
+  std::vector<std::string> words(kWords.begin(), kWords.end());
+  words.insert(words.end(), kClauses.begin(), kClauses.end());
+  for (const char* word : {"input", "memory", "frame", "mount", "body", "hull", "port", "dynamics", "control", "obstacle",
+                           "environment", "output", "every"})
+    words.emplace_back(word);
+  return words;
+}
+
 bool Parser::IsUnit(std::string_view word) const { return lang::FindUnit(word) != nullptr; }
 
 Name Parser::ParseName(std::string_view what) {

@@ -47,5 +47,7 @@ class Parser : public lang::ExprParser {
 
 /// Reports whether the word begins a part of robots or worlds everywhere, so that it names nothing.
 bool IsRobotWord(std::string_view word);
+/// Returns all words of robot types and worlds.
+std::vector<std::string> RobotWords();
 
 }  // namespace rondo::robot
