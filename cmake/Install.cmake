@@ -18,3 +18,15 @@ configure_package_config_file(cmake/rondoConfig.cmake.in ${CMAKE_BINARY_DIR}/ron
   PATH_VARS data)
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/rondoConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/rondoConfig.cmake ${CMAKE_BINARY_DIR}/rondoConfigVersion.cmake DESTINATION ${package})
+
+# What the program says of itself: manual pages, and completion for three shells.
+install(CODE "
+  set(rondo $<TARGET_FILE:rondo>)
+  set(share \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR})
+  execute_process(COMMAND \${rondo} help --pages \${share}/man/man1 COMMAND_ERROR_IS_FATAL ANY)
+  foreach(file bash:bash-completion/completions/rondo zsh:zsh/site-functions/_rondo fish:fish/vendor_completions.d/rondo.fish)
+    string(REGEX MATCH \"^[a-z]+\" shell \${file})
+    string(REGEX REPLACE \"^[a-z]+:\" \"\" path \${file})
+    execute_process(COMMAND \${rondo} completion \${shell} OUTPUT_VARIABLE script COMMAND_ERROR_IS_FATAL ANY)
+    file(WRITE \${share}/\${path} \"\${script}\")
+  endforeach()")

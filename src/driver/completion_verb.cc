@@ -49,15 +49,73 @@ complete -o filenames -F _rondo rondo
                      verbs, cases);
 }
 
+// A description between brackets or after a colon, in single quotes.
+std::string ForZsh(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '\'') {
+      result += "'\\''";
+      continue;
+    }
+    if (c == '[' || c == ']' || c == ':' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result;
+}
+
+std::string Zsh(const CLI::App& app) {
+  std::string verbs, cases;
+  for (const CLI::App* verb : app.get_subcommands({})) {
+    verbs += fmt::format("    '{}:{}'\n", verb->get_name(), ForZsh(verb->get_description()));
+    cases += fmt::format("    {}) _arguments", verb->get_name());
+    for (const CLI::Option* option : verb->get_options()) {
+      const bool value = option->get_type_size() > 0;
+      for (const std::string& name : option->get_lnames()) {
+        cases += fmt::format(" \\\n      '--{}{}[{}]{}'", name, value ? "=" : "",
+                             ForZsh(option->get_description()), value ? ":value:_files" : "");
+      }
+    }
+    const bool explains = verb->get_name() == "explain";
+    cases += fmt::format(" \\\n      '*:{}' ;;\n",
+                         explains ? "kind:($(rondo explain 2>/dev/null | cut -d\" \" -f1))" : "file:_files");
+  }
+  return fmt::format(R"zsh(#compdef rondo
+_rondo() {{
+  local -a verbs
+  verbs=(
+{}  )
+  if (( CURRENT == 2 )); then
+    _describe verb verbs
+    return
+  fi
+  local verb=$words[2]
+  shift words
+  (( CURRENT-- ))
+  case $verb in
+{}  esac
+}}
+if [ "$funcstack[1]" = _rondo ]; then _rondo "$@"; else compdef _rondo rondo; fi
+)zsh",
+                     verbs, cases);
+}
+
+// What stands in single quotes.
+std::string ForFish(const std::string& text) {
+  std::string result;
+  for (const char c : text) result += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  return result;
+}
+
 std::string Fish(const CLI::App& app) {
   std::string text;
   for (const CLI::App* verb : app.get_subcommands({})) {
     text += fmt::format("complete -c rondo -n __fish_use_subcommand -a {} -d '{}'\n", verb->get_name(),
-                        verb->get_description());
+                        ForFish(verb->get_description()));
     for (const CLI::Option* option : verb->get_options()) {
       for (const std::string& name : option->get_lnames()) {
-        text += fmt::format("complete -c rondo -n '__fish_seen_subcommand_from {}' -l {}\n", verb->get_name(),
-                            name);
+        text += fmt::format("complete -c rondo -n '__fish_seen_subcommand_from {}' -l {}{} -d '{}'\n",
+                            verb->get_name(), name, option->get_type_size() > 0 ? " -r" : "",
+                            ForFish(option->get_description()));
       }
     }
   }
@@ -74,7 +132,7 @@ void AddCompletionVerb(CLI::App& app, ExitStatus& status) {
   verb.Run([shell, &app, &status] {
     status = ExitStatus::kEstablished;
     if (*shell == "fish") return Print(Fish(app));
-    Print((*shell == "zsh" ? "autoload -U +X bashcompinit && bashcompinit\n" : "") + Bash(app));
+    Print(*shell == "zsh" ? Zsh(app) : Bash(app));
   });
 }
 

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
+#include "base/file.h"
 #include "driver/command.h"
 #include "driver/main.h"
+#include "driver/man_pages.h"
 #include "driver/terminal.h"
 #include "driver/usage.h"
 #include "driver/verbs.h"
@@ -12,18 +15,52 @@ namespace rondo::driver {
 
 using verdict::ExitStatus;
 
+namespace {
+
+struct Options {
+  std::string verb;
+  std::string pages;
+};
+
+ExitStatus WritePages(const CLI::App& app, const std::string& folder) {
+  std::string why = Folder(folder);
+  for (const auto& [name, text] :
+       why.empty() ? ManPages(app) : std::vector<std::pair<std::string, std::string>>{}) {
+    const auto written = base::WriteFileAtomically(std::filesystem::path(folder) / name, text);
+    if (!written.ok()) why = fmt::format("cannot write `{}`: {}", name, written.error().message);
+  }
+  if (!why.empty()) PrintFailure(why);
+  return why.empty() ? ExitStatus::kEstablished : ExitStatus::kRejected;
+}
+
+ExitStatus Help(const CLI::App& app, const Options& options) {
+  if (!options.pages.empty()) return WritePages(app, options.pages);
+  if (options.verb.empty()) {
+    Print(app.get_formatter()->make_help(&app, "rondo", CLI::AppFormatMode::Normal));
+    return ExitStatus::kEstablished;
+  }
+  const auto verbs =
+      app.get_subcommands([&](const CLI::App* sub) { return sub->get_name() == options.verb; });
+  if (verbs.empty()) {
+    PrintFailure(NoSuchVerb(app, options.verb));
+    return ExitStatus::kUsage;
+  }
+  Print(verbs.front()->help("rondo"));
+  return ExitStatus::kEstablished;
+}
+
+}  // namespace
+
 void AddHelpVerb(CLI::App& app, ExitStatus& status) {
-  auto name = std::make_shared<std::string>();
+  auto options = std::make_shared<Options>();
   Command verb(app, "help", "show the options and an example of a verb");
-  verb.Option("VERB", *name, "a verb; without one, all of them are listed");
-  verb.Footer("example: rondo help simulate");
-  verb.Run([name, &app, &status] {
-    const auto verbs = app.get_subcommands([&](const CLI::App* sub) { return sub->get_name() == *name; });
-    status = name->empty() || !verbs.empty() ? ExitStatus::kEstablished : ExitStatus::kUsage;
-    if (name->empty()) return Print(app.get_formatter()->make_help(&app, "rondo", CLI::AppFormatMode::Normal));
-    if (verbs.empty()) return PrintFailure(NoSuchVerb(app, *name));
-    Print(verbs.front()->help("rondo"));
-  });
+  verb.Option("VERB", options->verb, "a verb; without one, all of them are listed");
+  verb.Option("--pages", options->pages, "write everything as manual pages into this folder instead");
+  verb.Footer(
+      "examples:\n"
+      "  rondo help simulate\n"
+      "  rondo help --pages ~/.local/share/man/man1 && man rondo-prove");
+  verb.Run([options, &app, &status] { status = Help(app, *options); });
 }
 
 void AddVersionVerb(CLI::App& app, ExitStatus& status) {

@@ -25,10 +25,11 @@ namespace {
 
 /// In the order of the help.
 constexpr void (*kVerbs[])(CLI::App&, ExitStatus&) = {
-    AddNewVerb,     AddCheckVerb,   AddFormatVerb,   AddProveVerb,  AddExploreVerb,    AddSimulateVerb, AddRunVerb,
-    AddLaunchVerb,  AddBuildVerb,   AddDoctorVerb,   AddKeysVerb,   AddReplayVerb,     AddCampaignVerb, AddPlotVerb,
-    AddReachVerb,   AddInferVerb,   AddGraphVerb,    AddProjectVerb, AddSolveVerb,     AddCertifyVerb,  AddExplainVerb,
-    AddAstVerb,     AddCompletionVerb, AddHelpVerb,  AddVersionVerb,
+    AddNewVerb,      AddCheckVerb,  AddFormatVerb,     AddProveVerb, AddExploreVerb,
+    AddSimulateVerb, AddRunVerb,    AddLaunchVerb,     AddBuildVerb, AddDoctorVerb,
+    AddKeysVerb,     AddReplayVerb, AddCampaignVerb,   AddPlotVerb,  AddReachVerb,
+    AddInferVerb,    AddGraphVerb,  AddProjectVerb,    AddSolveVerb, AddCertifyVerb,
+    AddExplainVerb,  AddAstVerb,    AddCompletionVerb, AddHelpVerb,  AddVersionVerb,
 };
 
 // A reader that went away is no error; a full disk is.
@@ -59,7 +60,8 @@ int Main(int argc, char** argv) {
       "exit status: 0 established, 1 wrong input, refuted or not inductive, 2 usage, 3 unknown, 4 a bug of ours");
   for (const auto add : kVerbs) add(app, status);
   const std::string first = argc > 1 ? argv[1] : "-";
-  const bool known = !app.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == first; }).empty();
+  const bool known =
+      !app.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == first; }).empty();
   if (!first.starts_with('-') && !known) {
     PrintFailure(NoSuchVerb(app, first));
     return static_cast<int>(Written(ExitStatus::kUsage));

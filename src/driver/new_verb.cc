@@ -43,7 +43,8 @@ ExitStatus Run(const Options& options) {
   }
   std::string text = fmt::format("{}: {}\n", folder.string(), fmt::join(files, ", "));
   text += fmt::format("  cd {}\n", folder.string());
-  if (options.of == "koord") text += fmt::format("  rondo prove {0}.koord\n  rondo simulate {0}.koord\n", name);
+  if (options.of == "koord")
+    text += fmt::format("  rondo prove {0}.koord\n  rondo simulate {0}.koord\n", name);
   if (options.of == "choreography")
     text += fmt::format("  rondo prove {0}.rondo\n  rondo simulate {0}.rondo\n", name);
   if (options.of == "controller") text += fmt::format("  rondo reach {}.rondo\n", name);
@@ -56,10 +57,12 @@ ExitStatus Run(const Options& options) {
 void AddNewVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
   Command verb(app, "new", "begin a project: a program with a promise that is proved, and what runs it");
-  verb.Option("FOLDER", options->folder, "a new folder; the last part of its name is that of the project").Required();
-  verb.Option("--template", options->of,
-              "koord: one program for a fleet; choreography: messages and motions of two robots; controller: a robot whose "
-              "contracts are proved against its dynamics")
+  verb.Option("FOLDER", options->folder, "a new folder; the last part of its name is that of the project")
+      .Required();
+  verb.Option(
+          "--template", options->of,
+          "koord: one program for a fleet; choreography: messages and motions of two robots; controller: a robot whose "
+          "contracts are proved against its dynamics")
       .OneOf({"koord", "choreography", "controller"});
   verb.Flag("--json", options->json, "what was written as JSON on standard output");
   verb.Footer(

@@ -56,7 +56,8 @@ ExitStatus Run(const Options& options) {
   if (choreography && !options.paths && !options.distances && !options.map)
     return PlotChoreography(options, bytes.value());
   if (options.timeline || options.scene >= 0) {
-    PrintFailure(fmt::format("`{}` is no run of a choreography: `--timeline` and `--scene` are for those", options.trace));
+    PrintFailure(fmt::format("`{}` is no run of a choreography: `--timeline` and `--scene` are for those",
+                             options.trace));
     return ExitStatus::kRejected;
   }
   workspace::Session session;  // it could be read when the trace was made
@@ -89,9 +90,10 @@ void AddPlotVerb(CLI::App& app, ExitStatus& status) {
       verb.Flag("--map", options->map, "the map that the robots drew, and the world as it is");
   CommandOption timeline = verb.Flag("--timeline", options->timeline,
                                      "messages and motions of a choreography over time (its default)");
-  CommandOption scene = verb.Option("--scene", options->scene,
-                                    "where everything is after so many seconds of a choreography, from above and from the side")
-                            .Between(0.0, 1e9);
+  CommandOption scene =
+      verb.Option("--scene", options->scene,
+                  "where everything is after so many seconds of a choreography, from above and from the side")
+          .Between(0.0, 1e9);
   paths.Excludes(distances).Excludes(map).Excludes(timeline).Excludes(scene);
   distances.Excludes(map).Excludes(timeline).Excludes(scene);
   timeline.Excludes(map).Excludes(scene);

@@ -66,7 +66,8 @@ struct Together {
 
   // In an order that does not depend on which run ended first.
   void Sort() {
-    std::ranges::sort(incidents, {}, [](const Incident& i) { return std::tuple(i.seed, i.first.first, i.first.what); });
+    std::ranges::sort(incidents, {},
+                      [](const Incident& i) { return std::tuple(i.seed, i.first.first, i.first.what); });
   }
 };
 
@@ -107,10 +108,11 @@ class Simulation {
       last = now;
       line.Show(fmt::format("[{:.0f} of at most {:.0f} s]", time, end));
     };
-    const auto report = options_.trace.empty()
-                            ? sim::motions::RunChoreography(staged.cast, run, nullptr)
-                            : runs::RecordChoreography(
-                                  staged, run, runs::RecordOf(options_.files, staged, run, session_), options_.trace);
+    const auto report =
+        options_.trace.empty()
+            ? sim::motions::RunChoreography(staged.cast, run, nullptr)
+            : runs::RecordChoreography(staged, run, runs::RecordOf(options_.files, staged, run, session_),
+                                       options_.trace);
     if (!report.ok()) return report.error().message;
     all_.Add(options_.seed, report.value());
     return "";
@@ -118,7 +120,8 @@ class Simulation {
 
   // Each thread has a choreography of its own: motions become terms as they are called.
   std::string Many(const base::StopToken& stop, ProgressLine& line) {
-    const unsigned jobs = options_.jobs == 0 ? std::max(1U, std::thread::hardware_concurrency()) : options_.jobs;
+    const unsigned jobs =
+        options_.jobs == 0 ? std::max(1U, std::thread::hardware_concurrency()) : options_.jobs;
     std::atomic<uint64_t> next{0}, done{0};
     std::mutex mutex;
     std::string problem;
@@ -128,8 +131,8 @@ class Simulation {
       while (staged && !stop.StopRequested()) {
         const uint64_t k = next++;
         if (k >= options_.runs) return;
-        const auto report =
-            sim::motions::RunChoreography(staged->cast, {options_.seed + k, options_.duration, stop, {}}, nullptr);
+        const auto report = sim::motions::RunChoreography(
+            staged->cast, {options_.seed + k, options_.duration, stop, {}}, nullptr);
         const std::lock_guard lock(mutex);
         if (!report.ok()) {
           problem = report.error().message;
@@ -145,8 +148,8 @@ class Simulation {
 
   ExitStatus Tell(const std::string& name, size_t robots) const {
     ExitStatus status = ExitStatus::kEstablished;
-    if (!all_.unchecked.empty() || all_.ended.contains(Curtain::kLost) || all_.ended.contains(Curtain::kInterrupted) ||
-        all_.runs < options_.runs)
+    if (!all_.unchecked.empty() || all_.ended.contains(Curtain::kLost) ||
+        all_.ended.contains(Curtain::kInterrupted) || all_.runs < options_.runs)
       status = ExitStatus::kUndecided;
     if (!all_.incidents.empty()) status = ExitStatus::kRejected;
     if (options_.json) {
@@ -154,9 +157,10 @@ class Simulation {
       return status;
     }
     Print(fmt::format("{}: {}, {}\n{}", name, base::Counted(robots, "robot"),
-                      options_.runs == 1 ? fmt::format("seed {}", options_.seed)
-                                         : fmt::format("{} of {} runs, seeds {} to {}", all_.runs, options_.runs, options_.seed,
-                                                       options_.seed + options_.runs - 1),
+                      options_.runs == 1
+                          ? fmt::format("seed {}", options_.seed)
+                          : fmt::format("{} of {} runs, seeds {} to {}", all_.runs, options_.runs,
+                                        options_.seed, options_.seed + options_.runs - 1),
                       Text()));
     if (!options_.trace.empty()) Print(fmt::format("trace: {}\n", options_.trace));
     PrintDiagnostics(session_.sources, session_.diagnostics);
@@ -164,19 +168,23 @@ class Simulation {
   }
 
   std::string Text() const {
-    std::string text = fmt::format(
-        "  {:.6g} s, {}, {}{}\n", all_.time, base::Counted(all_.messages, "message"),
-        base::Counted(all_.motions, "motion"),
-        seconds_ > 0.005 ? fmt::format("; {:.1f} x real time", all_.time / seconds_) : "");
+    std::string text =
+        fmt::format("  {:.6g} s, {}, {}{}\n", all_.time, base::Counted(all_.messages, "message"),
+                    base::Counted(all_.motions, "motion"),
+                    seconds_ > 0.005 ? fmt::format("; {:.1f} x real time", all_.time / seconds_) : "");
     for (const Together::Incident& i : all_.incidents) {
-      text += fmt::format("  {}: {}\n    first at {:.6g} s", Name(i.first.wrong), i.first.what, i.first.first);
+      text +=
+          fmt::format("  {}: {}\n    first at {:.6g} s", Name(i.first.wrong), i.first.what, i.first.first);
       if (i.first.count > 1) text += fmt::format(", {} times", i.first.count);
-      if (options_.runs > 1) text += fmt::format(" of the run with `--seed {}`; in {}", i.seed, base::Counted(i.runs, "run"));
+      if (options_.runs > 1)
+        text += fmt::format(" of the run with `--seed {}`; in {}", i.seed, base::Counted(i.runs, "run"));
       text += "\n";
     }
     if (all_.incidents.empty()) text += "  no collision, no broken contract; looked at every 0.01 s\n";
-    if (std::isfinite(all_.between)) text += fmt::format("  robots never closer than {:.3f} m\n", all_.between);
-    if (std::isfinite(all_.obstacles)) text += fmt::format("  obstacles never closer than {:.3f} m\n", all_.obstacles);
+    if (std::isfinite(all_.between))
+      text += fmt::format("  robots never closer than {:.3f} m\n", all_.between);
+    if (std::isfinite(all_.obstacles))
+      text += fmt::format("  obstacles never closer than {:.3f} m\n", all_.obstacles);
     for (const std::string& what : all_.unchecked) text += fmt::format("  not checked: {}\n", what);
     for (const auto& [curtain, runs] : all_.ended) text += Ending(curtain, runs.first, runs.second);
     return text;
@@ -238,6 +246,8 @@ class Simulation {
 
 }  // namespace
 
-ExitStatus SimulateChoreography(const SimulateChoreographyOptions& options) { return Simulation(options).Run(); }
+ExitStatus SimulateChoreography(const SimulateChoreographyOptions& options) {
+  return Simulation(options).Run();
+}
 
 }  // namespace rondo::driver

@@ -13,8 +13,8 @@ namespace rondo::driver {
 struct SimulateChoreographyOptions {
   runs::ChoreographyFiles files;
   uint64_t seed = 1;
-  uint64_t runs = 1;      ///< of the seeds from `seed` on
-  double duration = 60;   ///< virtual seconds, at most
+  uint64_t runs = 1;     ///< of the seeds from `seed` on
+  double duration = 60;  ///< virtual seconds, at most
   unsigned jobs = 0;
   std::string trace;  ///< a file for what happens; empty: none
   bool json = false;

@@ -269,14 +269,16 @@ void RefuseMixture(const Command& verb, bool choreography) {
 
 ExitStatus RunChoreography(const Options& options) {
   constexpr double kDuration = 60;
-  SimulateChoreographyOptions run{{options.files, options.admitted, options.choreography, options.projections},
-                                  options.seed.value_or(1),
-                                  options.runs,
-                                  options.duration > 0 ? options.duration : kDuration,
-                                  options.jobs,
-                                  options.trace,
-                                  options.json};
-  if (options.runs > 1 && !options.trace.empty()) RefuseOption("--trace", "it is of one run: leave `--runs` out");
+  SimulateChoreographyOptions run{
+      {options.files, options.admitted, options.choreography, options.projections},
+      options.seed.value_or(1),
+      options.runs,
+      options.duration > 0 ? options.duration : kDuration,
+      options.jobs,
+      options.trace,
+      options.json};
+  if (options.runs > 1 && !options.trace.empty())
+    RefuseOption("--trace", "it is of one run: leave `--runs` out");
   return SimulateChoreography(run);
 }
 
@@ -285,9 +287,10 @@ ExitStatus RunChoreography(const Options& options) {
 void AddSimulateVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
   Command verb(app, "simulate", "run a program or a choreography on simulated robots, in virtual time");
-  verb.Option("FILE", options->files,
-              "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet, `NAME.spec` the specification. Or a "
-              "choreography (`.rondo`), with what belongs to it (`.chor`, `.rosl`)")
+  verb.Option(
+          "FILE", options->files,
+          "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet, `NAME.spec` the specification. Or a "
+          "choreography (`.rondo`), with what belongs to it (`.chor`, `.rosl`)")
       .Required();
   verb.Option("--fleet", options->fleet, "the fleet, if it is not beside the program");
   verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
@@ -301,7 +304,8 @@ void AddSimulateVerb(CLI::App& app, ExitStatus& status) {
   verb.Option("--runs", options->runs, "so many runs of a choreography, of the seeds from `--seed` on")
       .Between(uint64_t{1}, uint64_t{1'000'000'000});
   verb.Option("--seed", options->seed, "of everything that is random; default: the fleet's, or 1");
-  verb.Option("--duration", options->duration, "seconds; default: as the fleet says; of choreographies at most 60")
+  verb.Option("--duration", options->duration,
+              "seconds; default: as the fleet says; of choreographies at most 60")
       .Between(1e-3, 1e7);
   verb.Option("--trace", options->trace, "write everything that happens into this file (MCAP)");
   verb.Option("--jobs", options->jobs, "threads; default: one for each core. No run depends on it");

@@ -37,7 +37,8 @@ choreo::Graph* Find(workspace::LoadedModule& module, const std::string& name, wo
 
 }  // namespace
 
-std::optional<StagedChoreography> StageChoreography(const ChoreographyFiles& files, workspace::Session& session) {
+std::optional<StagedChoreography> StageChoreography(const ChoreographyFiles& files,
+                                                    workspace::Session& session) {
   StagedChoreography staged{workspace::LoadModule(files.files, files.admitted, session), {}};
   const auto conditions = workspace::CheckStructure(*staged.module, session);
   if (!conditions || session.diagnostics.has_errors()) return std::nullopt;
@@ -54,7 +55,8 @@ json RecordOf(const ChoreographyFiles& files, const StagedChoreography& staged,
   for (const choreo::Name& robot : staged.cast.graph->robots)
     robots.push_back({{"name", robot.text}, {"radius", 0.0}});
   for (size_t f = 0; f < session.sources.size(); ++f)
-    texts[std::string(session.sources.path(diag::FileId(f)))] = std::string(session.sources.text(diag::FileId(f)));
+    texts[std::string(session.sources.path(diag::FileId(f)))] =
+        std::string(session.sources.text(diag::FileId(f)));
   return {{"format", "rondo-trace/1"},
           {"engine", "choreography"},
           {"program_name", std::filesystem::path(files.files.front()).filename().string()},
@@ -68,9 +70,9 @@ json RecordOf(const ChoreographyFiles& files, const StagedChoreography& staged,
           {"duration", options.duration}};
 }
 
-base::Result<sim::motions::ChoreographyReport> RecordChoreography(const StagedChoreography& staged,
-                                                         const sim::motions::ChoreographyOptions& options,
-                                                         const json& record, const std::string& path) {
+base::Result<sim::motions::ChoreographyReport> RecordChoreography(
+    const StagedChoreography& staged, const sim::motions::ChoreographyOptions& options, const json& record,
+    const std::string& path) {
   auto opened = trace::Writer::Open(path);
   if (!opened.ok()) return base::Error{fmt::format("cannot write `{}`: {}", path, opened.error().message)};
   trace::Writer writer = std::move(opened).value();
@@ -110,8 +112,8 @@ Replayed ReplayChoreography(const std::string& bytes, const json& record, worksp
   if (!record.contains("seed") || !record["seed"].is_number_unsigned() || !record.contains("duration") ||
       !record["duration"].is_number())
     return {false, "the record of the run is damaged"};
-  const sim::motions::ChoreographyOptions options{record["seed"].get<uint64_t>(), record["duration"].get<double>(),
-                                                  replay.stop, replay.progress};
+  const sim::motions::ChoreographyOptions options{
+      record["seed"].get<uint64_t>(), record["duration"].get<double>(), replay.stop, replay.progress};
   base::Result<sim::motions::ChoreographyReport> report = base::Error{};
   const auto fresh = CopyOf([&](const std::string& path) -> base::Result<bool> {
     report = RecordChoreography(*staged, options, record, path);
@@ -120,8 +122,9 @@ Replayed ReplayChoreography(const std::string& bytes, const json& record, worksp
   if (!fresh.ok()) return {false, fresh.error().message};
   if (report.value().ended == sim::motions::Curtain::kInterrupted) return {false, "interrupted", true};
   if (fresh.value() == bytes)
-    return {true, fmt::format("the same run, bit for bit: {:.6g} s, {} messages, {} motions, {} bytes",
-                              report.value().time, report.value().messages, report.value().motions, bytes.size())};
+    return {true,
+            fmt::format("the same run, bit for bit: {:.6g} s, {} messages, {} motions, {} bytes",
+                        report.value().time, report.value().messages, report.value().motions, bytes.size())};
   return {false, "differs: " + FirstDifference(bytes, fresh.value())};
 }
 

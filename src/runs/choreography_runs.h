@@ -31,23 +31,24 @@ struct StagedChoreography {
 };
 
 /// Loads and checks a choreography. Nothing if something is wrong, which is in the session.
-std::optional<StagedChoreography> StageChoreography(const ChoreographyFiles& files, workspace::Session& session);
+std::optional<StagedChoreography> StageChoreography(const ChoreographyFiles& files,
+                                                    workspace::Session& session);
 
 /// Returns what a trace keeps of a run, so that it can be made again: `/rondo/run`.
 nlohmann::json RecordOf(const ChoreographyFiles& files, const StagedChoreography& staged,
                         const sim::motions::ChoreographyOptions& options, const workspace::Session& session);
 
 /// Runs a choreography and writes its trace. @error if it cannot be simulated, or the trace not written.
-base::Result<sim::motions::ChoreographyReport> RecordChoreography(const StagedChoreography& staged,
-                                                         const sim::motions::ChoreographyOptions& options,
-                                                         const nlohmann::json& record, const std::string& path);
+base::Result<sim::motions::ChoreographyReport> RecordChoreography(
+    const StagedChoreography& staged, const sim::motions::ChoreographyOptions& options,
+    const nlohmann::json& record, const std::string& path);
 
 /// Loads and checks the choreography of which a trace keeps the record. Nothing if it cannot be used; then the session knows
 /// why, or the record is damaged.
 std::optional<StagedChoreography> StageRecorded(const nlohmann::json& record, workspace::Session& session);
 
 /// Makes the run of a trace again, from what it keeps, and compares bit for bit.
-Replayed ReplayChoreography(const std::string& bytes, const nlohmann::json& record, workspace::Session& session,
-                            const ReplayOptions& options);
+Replayed ReplayChoreography(const std::string& bytes, const nlohmann::json& record,
+                            workspace::Session& session, const ReplayOptions& options);
 
 }  // namespace rondo::runs

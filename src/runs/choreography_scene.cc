@@ -10,7 +10,8 @@
 
 namespace rondo::runs {
 
-base::Result<std::string> DrawRunScene(const sim::StageHistory& history, double time, workspace::Session& session) {
+base::Result<std::string> DrawRunScene(const sim::StageHistory& history, double time,
+                                       workspace::Session& session) {
   const auto staged = StageRecorded(history.run, session);
   if (!staged) return base::Error{"the choreography that the trace keeps cannot be used"};
   const robot::World& world = *staged->cast.graph->world;
@@ -30,7 +31,8 @@ base::Result<std::string> DrawRunScene(const sim::StageHistory& history, double 
   constexpr std::array<std::string_view, 4> kFills{"#4080ff", "#ff9020", "#40b060", "#b050c0"},
       kStrokes{"#1040a0", "#a05000", "#106030", "#702080"};
   std::vector<choreo::Drawn> shapes;
-  for (const robot::Obstacle& o : world.obstacles) shapes.push_back({o.name.text, o.shape, "#666666", "#333333"});
+  for (const robot::Obstacle& o : world.obstacles)
+    shapes.push_back({o.name.text, o.shape, "#666666", "#333333"});
   for (size_t r = 0; r < world.bodies.size(); ++r) {
     const robot::Body& body = world.bodies[r];
     if (body.body) shapes.push_back({body.name.text, *body.body, kFills[r % 4], kStrokes[r % 4]});

@@ -44,11 +44,14 @@ std::string WrongName(const std::string& name) {
   // A choreography is called so, too.
   workspace::Session session;
   session.read = [&](const std::string&) -> base::Result<std::string> {
-    return Named("robot R { motion Wait() interruptible [0, inf) {} }\nworld W { a: R b: R }\nchoreography NAME in W { a -> b: go() }\n", name);
+    return Named(
+        "robot R { motion Wait() interruptible [0, inf) {} }\nworld W { a: R b: R }\nchoreography NAME in W { a -> b: go() }\n",
+        name);
   };
   workspace::LoadModule({"name.rondo"}, {}, session);
-  return session.diagnostics.has_errors() ? fmt::format("`{}` cannot be a name: it is a word of the language", name)
-                                          : std::string();
+  return session.diagnostics.has_errors()
+             ? fmt::format("`{}` cannot be a name: it is a word of the language", name)
+             : std::string();
 }
 
 base::Result<std::vector<std::string>> WriteProject(const fs::path& folder, const std::string& name,
@@ -57,7 +60,8 @@ base::Result<std::vector<std::string>> WriteProject(const fs::path& folder, cons
   if (fs::exists(folder, error) && !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
     return base::Error{fmt::format("`{}` is already there, and not an empty folder", folder.string())};
   const auto made = base::MakeFolders(folder);
-  if (!made.ok()) return base::Error{fmt::format("cannot make `{}`: {}", folder.string(), made.error().message)};
+  if (!made.ok())
+    return base::Error{fmt::format("cannot make `{}`: {}", folder.string(), made.error().message)};
   std::vector<std::string> written;
   for (const TemplateFile& file : TemplateFiles()) {
     if (file.project != of) continue;

@@ -17,7 +17,7 @@ std::string WrongName(const std::string& name);
 
 /// Writes a project of this template into a folder, which it makes. Returns the names of its files.
 /// @error if the folder is there and not empty, or something cannot be written.
-base::Result<std::vector<std::string>> WriteProject(const std::filesystem::path& folder, const std::string& name,
-                                                    const std::string& of);
+base::Result<std::vector<std::string>> WriteProject(const std::filesystem::path& folder,
+                                                    const std::string& name, const std::string& of);
 
 }  // namespace rondo::runs

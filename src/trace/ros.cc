@@ -63,7 +63,8 @@ std::string Transform(uint64_t time, const std::string& frame, const Pose& pose)
   return Serialised(m);
 }
 
-std::string JointState(uint64_t time, const std::vector<std::string>& names, const std::vector<double>& positions) {
+std::string JointState(uint64_t time, const std::vector<std::string>& names,
+                       const std::vector<double>& positions) {
   ros::sensor_msgs::JointState m;
   m.header = HeaderOf(time, "");
   m.name = names;

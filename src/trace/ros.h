@@ -36,7 +36,8 @@ std::string PoseStamped(uint64_t time, const Pose& pose);
 std::string Transform(uint64_t time, const std::string& frame, const Pose& pose);
 
 /// Returns a sensor_msgs/msg/JointState: a name for each position, in metres or radians.
-std::string JointState(uint64_t time, const std::vector<std::string>& names, const std::vector<double>& positions);
+std::string JointState(uint64_t time, const std::vector<std::string>& names,
+                       const std::vector<double>& positions);
 /// Reads one; false if the bytes are none, or have not a name for each position.
 bool ReadJointState(std::string_view bytes, std::vector<std::string>& names, std::vector<double>& positions);
 
@@ -63,7 +64,8 @@ struct Marker {
   Pose pose;                      ///< of its middle
   std::array<double, 3> size{};   ///< extents along its own x, y, z in metres
   std::array<float, 4> colour{};  ///< red, green, blue, opacity, from 0 to 1
-  std::vector<std::array<double, 3>> corners{};  ///< kTriangles: three for each, counterclockwise from outside; metres
+  std::vector<std::array<double, 3>>
+      corners{};  ///< kTriangles: three for each, counterclockwise from outside; metres
 };
 /// Returns a visualization_msgs/msg/MarkerArray.
 std::string MarkerArray(uint64_t time, const std::vector<Marker>& markers);

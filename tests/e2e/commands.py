@@ -164,6 +164,30 @@ done = rondo("explore", "models/room.rondo")
 check("a choreography for a program", done.returncode == 1 and "is a file of robots and choreographies" in done.stderr, done.stderr)
 done = rondo("simulate", "models/room.rondo")
 check("no choreography", done.returncode == 1 and "there is no choreography to simulate" in done.stderr, done.stderr)
+# What was mistyped is met with the right word.
+for args, wanted in ((["kyes"], "did you mean `keys`?"), (["prvoe", "x"], "did you mean `prove`?"), (["nothing-like-it"], "there is no verb"), (["help", "simulat"], "did you mean `simulate`?"),
+                     (["simulate", "x", "--sede", "3"], "`rondo simulate` has no option `--sede`; did you mean `--seed`?"), (["launch", "--durations=3"], "did you mean `--duration`?"),
+                     (["keys", "x", "--otuput", "y"], "`rondo keys` has no option"), (["--versoin"], "did you mean `--version`?")):
+    done = rondo(*args)
+    check(f"mistyped {args}", done.returncode == 2 and wanted in done.stderr, f"{done.returncode} {done.stderr}")
+done = rondo("version")
+check("version", done.returncode == 0 and done.stdout == rondo("--version").stdout, done.stdout)
+check("help", "simulate" in rondo("help").stdout and rondo("help", "prove").stdout == rondo("prove", "--help").stdout, rondo("help", "prove").stdout[:300])
+for suffix, old, new in ((".koord", "invariant x:", "invarient x:"), (".koord", "    eff:", "    ef:"), (".koord", "local:", "locall:"), (".rondo", "robot", "robto"),
+                         (".rondo", "motion", "moton"), (".rondo", "interruptible", "interuptible"), (".rondo", "world", "wolrd"), (".rondo", "choreography", "choregraphy"), (".rondo", "initially", "initialy")):
+    text = ("local:\n    int n = 0\nGo:\n    pre: n < 3\n    eff:\n        if n < 2:\n            n = n + 1\ninvariant x: forall i in ID: n[i] < 3\n" if suffix == ".koord" else
+            "robot R { motion Wait() interruptible [0, inf) {} }\nworld W { a: R b: R }\nchoreography C in W {\n  initially true\n  a -> b: go()\n}\n")
+    file = FOLDER / ("mistyped" + suffix)
+    file.write_text(text.replace(old, new))
+    done = rondo("check", str(file))
+    word = old.strip(" :\n").split(" ")[0]
+    check(f"mistyped {new.strip()}", done.returncode == 1 and f"did you mean `{word}`?" in done.stderr, done.stderr)
+# First projects: the name is that of the folder; nothing is overwritten.
+for args, status, says in ((["new", str(FOLDER / "Visit"), "--template", "choreography"], 0, "rondo prove Visit.rondo"), (["new", str(FOLDER / "Visit")], 1, "already there"),
+                           (["new", str(FOLDER / "9lives")], 1, "cannot be a name"), (["new", str(FOLDER / "when")], 1, "a word of the language"),
+                           (["new", str(FOLDER / "x"), "--template", "nothing"], 2, "nothing not in"), (["new", "/proc/x"], 1, "cannot make")):
+    done = rondo(*args)
+    check(f"{args}", done.returncode == status and says in done.stdout + done.stderr, f"{done.returncode} {done.stdout}{done.stderr}")
 # Text that is none of the language, long, on one line, deeply nested, with signs that terminals obey.
 for name, text in (("signs", "$ % ^ ~ ` " * 20_000), ("words", "some words that mean nothing at all\n" * 5_500), ("word", "D" * 200_000), ("brackets", "(" * 200_000), ("one", "invariant x: " + "a + " * 50_000 + "a\n"),
                    ("braces", "{ } " * 50_000), ("strings", '"' * 200_000), ("indented", "".join(" " * (i % 40) + "x\n" for i in range(9_000))),

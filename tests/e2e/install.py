@@ -44,6 +44,18 @@ def main():
         run("cmake", "--build", user / "adapters")
         if not (user / "adapters/libbattery.so").is_file():
             sys.exit("no adapter was built")
+        # A first project, as its README says, with nothing but what was installed; pages and completion are there.
+        path = {**cache, "PATH": f"{prefix}/bin:{os.environ['PATH']}"}
+        for template in ("koord", "choreography", "controller"):
+            run(program, "new", "--template", template, "Dock", cwd=user)
+            run("./check", cwd=user / "Dock", env=path)
+            (user / "Dock").rename(user / f"Dock-{template}")
+        page = (prefix / "share/man/man1/rondo-prove.1").read_text()
+        if not page.startswith(".TH RONDO\\-PROVE 1") or "\\fB\\-\\-helpers\\fR" not in page:
+            sys.exit(f"a strange page: {page[:300]}")
+        for script in ("bash-completion/completions/rondo", "zsh/site-functions/_rondo", "fish/vendor_completions.d/rondo.fish"):
+            if "simulate" not in (prefix / "share" / script).read_text():
+                sys.exit(f"no completion in {script}")
         if not any(pathlib.Path(models).glob("**/*.rondo")):
             sys.exit(f"no models in {models}")
     print("installed, found and run")

@@ -55,7 +55,8 @@ robot::Scope ProcessScript::ScopeOf(const FlowNode& node) const {
   return scope;
 }
 
-std::optional<std::vector<Value>> ProcessScript::Values(const std::vector<ExprId>& exprs, const FlowNode& node) {
+std::optional<std::vector<Value>> ProcessScript::Values(const std::vector<ExprId>& exprs,
+                                                        const FlowNode& node) {
   const robot::Scope scope = ScopeOf(node);
   std::vector<Value> values;
   for (const ExprId e : exprs) {

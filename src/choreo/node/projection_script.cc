@@ -105,10 +105,11 @@ void ProjectionScript::Behind(Step& step) {
 
 bool ProjectionScript::Waits() const {
   const LocalState& state = At(only_);
-  return state.choice.empty() && std::ranges::none_of(state.next, [](const auto& n) {
-           return n.first.kind == Action::Kind::kSend;
-         }) &&
-         std::ranges::any_of(state.next, [](const auto& n) { return n.first.kind == Action::Kind::kReceive; });
+  return state.choice.empty() &&
+         std::ranges::none_of(state.next,
+                              [](const auto& n) { return n.first.kind == Action::Kind::kSend; }) &&
+         std::ranges::any_of(state.next,
+                             [](const auto& n) { return n.first.kind == Action::Kind::kReceive; });
 }
 
 void ProjectionScript::Took(size_t which, const std::vector<double>&) { at_ = cases_[which]; }

@@ -19,13 +19,14 @@ using lang::TokenKind;
 namespace {
 
 // Besides those that statements begin with.
-constexpr std::string_view kWords[] = {
-    "using", "def",    "actuators", "sensors", "allread", "allwrite", "local", "init",
-    "pre",   "eff",    "elif",      "else",    "in",      "and",      "or",    "not",
-    "pid",   "forall", "exists",    "implies", "true",    "false",    "True",  "False"};
+constexpr std::string_view kWords[] = {"using",  "def",     "actuators", "sensors", "allread", "allwrite",
+                                       "local",  "init",    "pre",       "eff",     "elif",    "else",
+                                       "in",     "and",     "or",        "not",     "pid",     "forall",
+                                       "exists", "implies", "true",      "false",   "True",    "False"};
 // Words only where a line begins with them, or a quantifier.
-constexpr std::string_view kPlaceWords[] = {"invariant", "assume",  "initially", "always", "response", "summary", "platform",
-                                            "explore",   "fallback", "param",    "module", "urgent",   "count"};
+constexpr std::string_view kPlaceWords[] = {"invariant", "assume",   "initially", "always",   "response",
+                                            "summary",   "platform", "explore",   "fallback", "param",
+                                            "module",    "urgent",   "count"};
 
 }  // namespace
 
@@ -292,8 +293,11 @@ bool Parser::ParseEventBody(EventDef& event) {
   if (!Accept("eff")) {
     auto& report = Unexpected(event.pre.valid() ? "`eff`" : "`pre` or `eff`").Under("in an event");
     // It looks like an event, and was perhaps meant to be something else.
-    const std::string near = report.helps.empty() ? lang::Suggest(event.name, {"allread", "allwrite", "local", "init", "explore"}) : "";
-    if (!near.empty()) report.Help(fmt::format("`{}` is an event here; did you mean `{}`?", event.name, near));
+    const std::string near =
+        report.helps.empty() ? lang::Suggest(event.name, {"allread", "allwrite", "local", "init", "explore"})
+                             : "";
+    if (!near.empty())
+      report.Help(fmt::format("`{}` is an event here; did you mean `{}`?", event.name, near));
     SkipLine();
     return false;
   }

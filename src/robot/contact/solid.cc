@@ -19,8 +19,8 @@ using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
 /// Is one convex part: twelve numbers say where its frame is, the others what it is like.
 struct Part {
   ShapeKind kind = ShapeKind::kSphere;
-  size_t first = 0, count = 0;  // of its numbers among all
-  std::vector<double> made;     // of which numbers the geometry was made
+  size_t first = 0, count = 0;                   // of its numbers among all
+  std::vector<double> made;                      // of which numbers the geometry was made
   fcl::Vector3d middle = fcl::Vector3d::Zero();  // of the geometry, in the frame of the shape
   std::optional<fcl::CollisionObjectd> object;
 };
@@ -75,7 +75,8 @@ Geometry Make(ShapeKind kind, std::span<const double> n, fcl::Vector3d& middle) 
 // Collects the convex parts and their numbers as terms; false if there is no such shape.
 bool Collect(Arena& arena, const Shape& shape, std::vector<Part>& parts, std::vector<TermId>& numbers) {
   if (shape.kind == ShapeKind::kUnion)
-    return std::ranges::all_of(shape.parts, [&](const Shape& p) { return Collect(arena, p, parts, numbers); });
+    return std::ranges::all_of(shape.parts,
+                               [&](const Shape& p) { return Collect(arena, p, parts, numbers); });
   if (shape.kind == ShapeKind::kHalfSphere || shape.kind == ShapeKind::kIntersection) return false;
   Part part;
   part.kind = shape.kind;

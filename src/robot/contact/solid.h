@@ -18,7 +18,8 @@ std::vector<TermId> VariablesOf(Arena& arena, const Shape& shape);
 /// corners (x, y), counterclockwise; of half-spaces, the normal and the offset.
 struct SolidPart {
   ShapeKind kind = ShapeKind::kSphere;
-  std::array<double, 12> frame{};  ///< rotation, row by row, and origin: from the frame of the shape to the world
+  std::array<double, 12>
+      frame{};  ///< rotation, row by row, and origin: from the frame of the shape to the world
   std::vector<double> sizes;
 };
 

@@ -28,8 +28,8 @@ bool IsRobotWord(std::string_view word) { return Contains(kWords, word); }
 std::vector<std::string> RobotWords() {
   std::vector<std::string> words(kWords.begin(), kWords.end());
   words.insert(words.end(), kClauses.begin(), kClauses.end());
-  for (const char* word : {"input", "memory", "frame", "mount", "body", "hull", "port", "dynamics", "control", "obstacle",
-                           "environment", "output", "every"})
+  for (const char* word : {"input", "memory", "frame", "mount", "body", "hull", "port", "dynamics", "control",
+                           "obstacle", "environment", "output", "every"})
     words.emplace_back(word);
   return words;
 }

@@ -53,9 +53,7 @@ bool Session::Advance(Time now) {
 
 std::vector<Frame> Session::TakeFrames() { return std::exchange(out_, {}); }
 
-std::optional<Time> Session::Wake() const {
-  return offer_ && !taken_ ? std::optional(again_) : std::nullopt;
-}
+std::optional<Time> Session::Wake() const { return offer_ && !taken_ ? std::optional(again_) : std::nullopt; }
 
 bool Session::MayBeInterrupted() const {
   return !moving_ || progress_ == Progress::kOpen || progress_ == Progress::kReady;
@@ -116,7 +114,8 @@ Session::Went Session::Move() {
 
 Session::Went Session::Send() {
   if (!offer_) {
-    offer_ = Frame{Frame::Kind::kOffer, session_, self_, step_->to, sent_[step_->to]++, step_->label, step_->values};
+    offer_ = Frame{Frame::Kind::kOffer, session_,     self_,        step_->to,
+                   sent_[step_->to]++,  step_->label, step_->values};
     taken_ = false;
     again_ = now_;
   }

@@ -235,7 +235,8 @@ TEST(Session, WhoWaitsListensAsSoonAsItsMotionIsOpen) {
 }
 
 TEST(Session, AMessageThatIsNotExpectedYetWaits) {
-  Robot a(0, {Sending(1, "second")}), b(1, {Receiving({{2, "first"}}), Receiving({{0, "other"}, {0, "second"}})});
+  Robot a(0, {Sending(1, "second")}),
+      b(1, {Receiving({{2, "first"}}), Receiving({{0, "other"}, {0, "second"}})});
   Settle(0, a, b);
   EXPECT_EQ(b.program.did, Did{});
   b.session.Hear({Frame::Kind::kOffer, 7, 2, 1, 0, "first", {}});
@@ -256,7 +257,7 @@ TEST(Session, OffersAreSentAgainAndTakenOnce) {
   b.session.Hear(again[0]);
   b.session.Advance(10);
   EXPECT_EQ(b.session.TakeFrames().size(), 1u);  // lost
-  b.session.Hear(again[0]);                       // the same once more
+  b.session.Hear(again[0]);                      // the same once more
   b.session.Advance(11);
   EXPECT_EQ(b.program.did, Did{"took m"});
   const std::vector<Frame> answers = b.session.TakeFrames();
@@ -310,7 +311,8 @@ TEST(Session, MessagesArriveOnceAndInOrderWhateverTheNetworkDoes) {
     std::array<std::vector<Step>, 3> steps;
     std::array<Did, 3> wanted;
     for (int k = 0; k < 100; ++k) {
-      const auto from = static_cast<uint32_t>(random() % 3), to = (from + 1 + static_cast<uint32_t>(random() % 2)) % 3;
+      const auto from = static_cast<uint32_t>(random() % 3),
+                 to = (from + 1 + static_cast<uint32_t>(random() % 2)) % 3;
       const std::string label(1, static_cast<char>('a' + random() % 3));
       steps[from].push_back(Sending(to, label, {static_cast<double>(k)}));
       steps[to].push_back(Receiving({{from, label}}));

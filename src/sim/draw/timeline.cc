@@ -15,8 +15,8 @@ using draw::Svg;
 
 constexpr double kMargin = 16, kAxis = 64, kHead = 30, kTitle = 22;
 constexpr double kLeastLane = 130, kMostLane = 320, kBar = 16;
-constexpr double kRow = 18;         // of a message or an incident
-constexpr double kSecond = 22;      // of time that passes
+constexpr double kRow = 18;     // of a message or an incident
+constexpr double kSecond = 22;  // of time that passes
 constexpr double kLeastGap = 12, kMostGap = 150;
 constexpr size_t kMostMessages = 400;
 constexpr std::string_view kInk = "#333333", kPale = "#bbbbbb", kMoves = "#d5e6f5", kBad = "#cc2222";
@@ -104,8 +104,8 @@ class Timeline {
   }
 
   std::string Title() const {
-    std::string title =
-        fmt::format("{}, seed {}", TextOf(h_.run, "choreography"), h_.run.contains("seed") ? h_.run["seed"].dump() : "?");
+    std::string title = fmt::format("{}, seed {}", TextOf(h_.run, "choreography"),
+                                    h_.run.contains("seed") ? h_.run["seed"].dump() : "?");
     if (end_ < h_.end) title += fmt::format(": the first {:.6g} of {:.6g} s", end_, h_.end);
     return title;
   }

@@ -22,7 +22,7 @@ using runtime::sessions::Step;
 using runtime::sessions::Time;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kLook = 0.01;    // seconds from one look at the world to the next
+constexpr double kLook = 0.01;       // seconds from one look at the world to the next
 constexpr int kMostAtOnce = 10'000;  // things that happen at one instant
 
 class ChoreographyRun final : public Audience {
@@ -253,8 +253,8 @@ class ChoreographyRun final : public Audience {
     if (time_ >= options_.duration) return End(Curtain::kTime);
     for (size_t r = 0; r < performers_.size(); ++r) {
       if (!Stands(*performers_[r])) continue;
-      Tell(Wrong::kWaiting, fmt::format("time passes for `{}`, which makes no motion",
-                                        graph_.NameOf(choreo::RobotId(r))));
+      Tell(Wrong::kWaiting,
+           fmt::format("time passes for `{}`, which makes no motion", graph_.NameOf(choreo::RobotId(r))));
     }
     if (options_.progress) options_.progress(time_, options_.duration);
     return false;
@@ -273,7 +273,8 @@ class ChoreographyRun final : public Audience {
       for (const auto& c : step.cases)
         what += fmt::format("{}`{}` from `{}`", what.empty() ? "for " : " or ", c.label,
                             graph_.NameOf(choreo::RobotId(c.from)));
-      text += fmt::format("{}`{}` waits {}", text.empty() ? "" : ", ", graph_.NameOf(choreo::RobotId(r)), what);
+      text +=
+          fmt::format("{}`{}` waits {}", text.empty() ? "" : ", ", graph_.NameOf(choreo::RobotId(r)), what);
     }
     return text;
   }

@@ -58,8 +58,7 @@ void Condition::Violated(size_t node, std::span<const double> terms, std::vector
       for (const size_t part : n.parts) Violated(part, terms, atoms);
       return;
     case reach::Formula::Kind::kOr: {
-      const auto best = std::ranges::min_element(
-          n.parts, {}, [&](size_t part) { return Miss(part, terms); });
+      const auto best = std::ranges::min_element(n.parts, {}, [&](size_t part) { return Miss(part, terms); });
       if (best != n.parts.end()) Violated(*best, terms, atoms);
       return;
     }
@@ -87,7 +86,8 @@ bool Condition::Approach(std::span<double> values, std::span<const size_t> free)
       const double kept = value, h = kDifference * (1 + std::abs(kept));
       value = kept + h;
       const auto moved = terms_(values);
-      for (Eigen::Index i = 0; i < m; ++i) slopes(i, j) = (moved[atoms[static_cast<size_t>(i)]] - residual(i)) / h;
+      for (Eigen::Index i = 0; i < m; ++i)
+        slopes(i, j) = (moved[atoms[static_cast<size_t>(i)]] - residual(i)) / h;
       value = kept;
     }
     if (!slopes.allFinite() || !residual.allFinite()) return false;

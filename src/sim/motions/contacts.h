@@ -17,7 +17,8 @@ class Contacts {
   /// Is told that two begin to touch.
   using Tell = std::function<void(Wrong, const std::string& what)>;
 
-  Contacts(const robot::World& world, expr::Arena& arena, const SceneState& scene, ChoreographyReport& report);
+  Contacts(const robot::World& world, expr::Arena& arena, const SceneState& scene,
+           ChoreographyReport& report);
 
   /// Looks at the present state. `motions`: by robot, the one under way; nullptr if it makes none. Changes no more of the
   /// scene than its clock.

@@ -12,7 +12,8 @@ namespace rondo::sim::motions {
 /// on average, in half of the cases one of its ends, and goes to the next one evenly, within a tenth of a second.
 class Disturbances {
  public:
-  Disturbances(const robot::World& world, const expr::Arena& arena, SceneState& scene, std::mt19937_64& random);
+  Disturbances(const robot::World& world, const expr::Arena& arena, SceneState& scene,
+               std::mt19937_64& random);
 
   /// Moves them to this moment, in seconds since the run began; all but those in `set`, positions of what controllers set.
   void To(double seconds, const std::vector<bool>& set);
@@ -23,8 +24,8 @@ class Disturbances {
   struct One {
     size_t place;
     double low, high;
-    double from, to;       // values
-    double begins, ends;   // of the way from the one to the other, seconds
+    double from, to;      // values
+    double begins, ends;  // of the way from the one to the other, seconds
   };
   double Value(const One& one);
 

@@ -16,7 +16,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class Coder {
  public:
-  Coder(const choreo::Graph& graph, const choreo::Instance& instance, expr::Arena& arena, const SceneState& scene)
+  Coder(const choreo::Graph& graph, const choreo::Instance& instance, expr::Arena& arena,
+        const SceneState& scene)
       : instance_(instance), body_(graph.BodyOf(instance.robot)), arena_(arena), scene_(scene) {}
 
   base::Result<MotionCode> Run() {

@@ -37,7 +37,7 @@ struct MotionCode {
   size_t robot = 0;
   double least = 0, most = std::numeric_limits<double>::infinity();  ///< seconds
   bool interruptible = true;
-  std::vector<size_t> free;  ///< the states that it may change
+  std::vector<size_t> free;       ///< the states that it may change
   std::vector<double> low, high;  ///< of these: their ranges; infinite where there is none
   Condition pre, assume;
   Condition during;  ///< with the ranges of the states

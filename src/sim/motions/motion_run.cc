@@ -14,11 +14,11 @@ using runtime::sessions::Progress;
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSmooth = 0.01;      // seconds from one state of a motion to the next
-constexpr int kStates = 20;           // of a short motion, at least
-constexpr double kFlow = 2e-3;        // seconds of one step of an integrator
-constexpr double kSlack = 0.02;       // metres or radians that nobody calls a jump
-constexpr double kMoment = 1e-9;      // seconds by which times may differ for rounding
+constexpr double kSmooth = 0.01;  // seconds from one state of a motion to the next
+constexpr int kStates = 20;       // of a short motion, at least
+constexpr double kFlow = 2e-3;    // seconds of one step of an integrator
+constexpr double kSlack = 0.02;   // metres or radians that nobody calls a jump
+constexpr double kMoment = 1e-9;  // seconds by which times may differ for rounding
 
 // Anywhere between two numbers, often one of them.
 double Somewhere(std::mt19937_64& random, double low, double high) {
@@ -227,7 +227,8 @@ Progress MotionRun::progress() const {
 }
 
 double MotionRun::next() const {
-  for (const double t : {code_.interruptible ? code_.least : over_, code_.interruptible ? ready_ : over_, over_}) {
+  for (const double t :
+       {code_.interruptible ? code_.least : over_, code_.interruptible ? ready_ : over_, over_}) {
     if (t > time_ + kMoment) return t;
   }
   return kInfinity;

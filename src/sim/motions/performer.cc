@@ -25,8 +25,8 @@ base::Result<MotionCode*> MotionLibrary::Find(size_t instance) {
   return known.get();
 }
 
-Performer::Performer(const choreo::Cast& cast, choreo::RobotId robot, SceneState& scene, MotionLibrary& library,
-                     std::mt19937_64& random, Audience& audience)
+Performer::Performer(const choreo::Cast& cast, choreo::RobotId robot, SceneState& scene,
+                     MotionLibrary& library, std::mt19937_64& random, Audience& audience)
     : cast_(cast),
       scene_(scene),
       library_(library),

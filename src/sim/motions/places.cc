@@ -11,7 +11,8 @@ using choreo::NodeKind;
 using choreo::RobotId;
 using choreo::StateId;
 
-Places::Places(const choreo::Cast& cast) : cast_(cast), at_(cast.types.size(), {StateId(0)}), steps_(cast.types.size()) {
+Places::Places(const choreo::Cast& cast)
+    : cast_(cast), at_(cast.types.size(), {StateId(0)}), steps_(cast.types.size()) {
   FindThreads();
 }
 

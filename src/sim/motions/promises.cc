@@ -116,7 +116,9 @@ std::set<Wrong> Promises::Broken(NodeId fork, size_t branch, const SceneState& s
   for (size_t other = 0; other < (*cast_.graph)[fork].facts.size(); ++other) {
     auto& region = ThreadOf(fork, other).region;
     if (!region) continue;
-    const auto inside = [&](const std::vector<double>& p) { return region->Miss(p) < -Condition::kTolerance; };
+    const auto inside = [&](const std::vector<double>& p) {
+      return region->Miss(p) < -Condition::kTolerance;
+    };
     if (other == branch && !std::ranges::all_of(points, [&](const auto& p) { return region->Holds(p); }))
       wrong.insert(Wrong::kRegion);
     if (other != branch && own.region && std::ranges::any_of(points, inside)) wrong.insert(Wrong::kFork);
@@ -133,12 +135,14 @@ void Promises::Look(SceneState& scene, const MotionRun& motion, const Places& pl
   std::optional<std::set<Wrong>> always;
   for (const NodeId step : steps) {
     std::set<Wrong> wrong;
-    for (const auto& [fork, branch] : places.ThreadsAround(step)) wrong.merge(Broken(fork, branch, scene, points));
+    for (const auto& [fork, branch] : places.ThreadsAround(step))
+      wrong.merge(Broken(fork, branch, scene, points));
     if (!always) always = wrong;
     std::erase_if(*always, [&](Wrong w) { return !wrong.contains(w); });
   }
   for (const Wrong w : always.value_or(std::set<Wrong>{})) {
-    tell(w, w == Wrong::kRegion ? fmt::format("the footprint of `{}` leaves the region of its thread", motion.code().text)
+    tell(w, w == Wrong::kRegion
+                ? fmt::format("the footprint of `{}` leaves the region of its thread", motion.code().text)
             : w == Wrong::kFork
                 ? fmt::format("the footprint of `{}` is in the region of another thread", motion.code().text)
                 : fmt::format("while `{}`, its thread does not keep what it guarantees", motion.code().text));
@@ -168,7 +172,8 @@ void Promises::Look(SceneState& scene, const std::vector<NodeId>& nodes, const s
   const Node& node = graph[nodes[0]];
   const std::string message =
       fmt::format("`{}` from `{}` to `{}`", node.label, graph.NameOf(node.from), graph.NameOf(node.to));
-  if (when > Condition::kTolerance) tell(Wrong::kMessage, fmt::format("the guard of {} does not hold", message));
+  if (when > Condition::kTolerance)
+    tell(Wrong::kMessage, fmt::format("the guard of {} does not hold", message));
   if (refinement > Condition::kTolerance)
     tell(Wrong::kMessage, fmt::format("{} does not carry what it promises", message));
 }

@@ -38,10 +38,10 @@ struct Incident {
 
 /// Names why a run ended.
 enum class Curtain : uint8_t {
-  kEnd,          ///< every robot is at its end
-  kTime,         ///< the time was over
-  kFailed,       ///< a robot could not go on, or nobody could
-  kLost,         ///< no curve was found that keeps a contract, so that nobody can tell what would follow
+  kEnd,     ///< every robot is at its end
+  kTime,    ///< the time was over
+  kFailed,  ///< a robot could not go on, or nobody could
+  kLost,    ///< no curve was found that keeps a contract, so that nobody can tell what would follow
   kInterrupted,
 };
 std::string_view Name(Curtain curtain);

@@ -57,7 +57,8 @@ std::vector<trace::Marker> Markers(const std::string& group, const robot::Solid&
   for (const robot::SolidPart& part : solid.Standing()) {
     Eigen::Isometry3d pose = PoseIn(part.frame);
     const std::vector<double>& n = part.sizes;
-    const auto add = [&](trace::Marker::Kind kind, const Eigen::Vector3d& middle, const std::array<double, 3>& size) {
+    const auto add = [&](trace::Marker::Kind kind, const Eigen::Vector3d& middle,
+                         const std::array<double, 3>& size) {
       Eigen::Isometry3d at = pose;
       at.translation() += pose.linear() * middle;
       markers.push_back({group, static_cast<int32_t>(markers.size()), kind, PoseOf(at), size, colour});
@@ -131,7 +132,8 @@ StageRecorder::StageRecorder(trace::Writer& writer, const choreo::Graph& graph, 
     auto solid = robot::Solid::Of(arena, o.shape, scene_.variables());
     if (!solid) continue;
     solid->Place(scene_.values());
-    for (trace::Marker& m : Markers(o.name.text, *solid, {0.5F, 0.5F, 0.5F, 1.0F})) markers.push_back(std::move(m));
+    for (trace::Marker& m : Markers(o.name.text, *solid, {0.5F, 0.5F, 0.5F, 1.0F}))
+      markers.push_back(std::move(m));
   }
   writer_.Message(Channel("/world", trace::kMarkerArray, "cdr"), 0, trace::MarkerArray(0, markers));
 }
@@ -156,11 +158,14 @@ void StageRecorder::Message(double time, uint32_t from, uint32_t to, const std::
 }
 
 void StageRecorder::Begins(double time, const MotionCode& motion) {
-  Event(time, {{"kind", "begins"}, {"robot", graph_.NameOf(choreo::RobotId(motion.robot))}, {"motion", motion.call}});
+  Event(
+      time,
+      {{"kind", "begins"}, {"robot", graph_.NameOf(choreo::RobotId(motion.robot))}, {"motion", motion.call}});
 }
 
 void StageRecorder::Ends(double time, const MotionCode& motion) {
-  Event(time, {{"kind", "ends"}, {"robot", graph_.NameOf(choreo::RobotId(motion.robot))}, {"motion", motion.call}});
+  Event(time,
+        {{"kind", "ends"}, {"robot", graph_.NameOf(choreo::RobotId(motion.robot))}, {"motion", motion.call}});
 }
 
 void StageRecorder::Incident(double time, Wrong wrong, const std::string& what) {
@@ -184,7 +189,8 @@ void StageRecorder::Show(double time, const SceneState& scene) {
     for (size_t f = 0; f < numbers.size() / 12; ++f) {
       const trace::Pose pose = PoseOf(PoseIn(numbers.subspan(12 * f, 12)));
       if (robot.frames[f].pose)
-        writer_.Message(Channel("/" + name + "/pose", trace::kPoseStamped, "cdr"), at, trace::PoseStamped(at, pose));
+        writer_.Message(Channel("/" + name + "/pose", trace::kPoseStamped, "cdr"), at,
+                        trace::PoseStamped(at, pose));
       writer_.Message(Channel("/tf", trace::kTransforms, "cdr"), at,
                       trace::Transform(at, robot.frames[f].name, pose));
     }
@@ -197,7 +203,8 @@ void StageRecorder::Show(double time, const SceneState& scene) {
     robot.body->Place(scene.values());
     constexpr std::array<std::array<float, 4>, 4> kColours{
         {{0.25F, 0.5F, 1, 1}, {1, 0.55F, 0.1F, 1}, {0.2F, 0.7F, 0.3F, 1}, {0.7F, 0.3F, 0.8F, 1}}};
-    for (trace::Marker& m : Markers(name, *robot.body, kColours[r % kColours.size()])) markers.push_back(std::move(m));
+    for (trace::Marker& m : Markers(name, *robot.body, kColours[r % kColours.size()]))
+      markers.push_back(std::move(m));
   }
   writer_.Message(Channel("/bodies", trace::kMarkerArray, "cdr"), at, trace::MarkerArray(at, markers));
 }

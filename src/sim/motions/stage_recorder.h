@@ -22,10 +22,12 @@ namespace rondo::sim::motions {
 class StageRecorder {
  public:
   /// Begins with `/rondo/run` and the obstacles. Everything must outlive it.
-  StageRecorder(trace::Writer& writer, const choreo::Graph& graph, expr::Arena& arena, const nlohmann::json& run);
+  StageRecorder(trace::Writer& writer, const choreo::Graph& graph, expr::Arena& arena,
+                const nlohmann::json& run);
 
   /// Say what happens, at this moment in seconds since the run began.
-  void Message(double time, uint32_t from, uint32_t to, const std::string& label, const std::vector<double>& values);
+  void Message(double time, uint32_t from, uint32_t to, const std::string& label,
+               const std::vector<double>& values);
   void Begins(double time, const MotionCode& motion);
   void Ends(double time, const MotionCode& motion);
   void Incident(double time, Wrong wrong, const std::string& what);
