@@ -1,8 +1,11 @@
 #include "driver/command.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -16,6 +19,11 @@ CommandOption& CommandOption::Required() {
 template <typename T>
 CommandOption& CommandOption::Between(T least, T most) {
   option_->check(CLI::Range(least, most));
+  // What is no number is in every range, for comparisons with it are false.
+  if constexpr (std::is_floating_point_v<T>)
+    option_->check([](const std::string& text) {
+      return std::isnan(std::strtod(text.c_str(), nullptr)) ? text + " is no number" : "";
+    });
   return *this;
 }
 
@@ -53,7 +61,12 @@ Command Command::Verb(const char* name, const char* what) {
 
 template <typename T>
 CommandOption Command::Option(const char* name, T& value, const char* what) {
-  return CommandOption(verb_->add_option(name, value, what));
+  CLI::Option* option = verb_->add_option(name, value, what);
+  // Else -1 would be the largest number.
+  if constexpr (std::is_unsigned_v<T> || std::is_same_v<T, std::optional<uint64_t>> ||
+                std::is_same_v<T, std::vector<uint64_t>>)
+    option->check([](const std::string& text) { return text.starts_with('-') ? text + " is below 0" : ""; });
+  return CommandOption(option);
 }
 
 template CommandOption Command::Option(const char*, std::string&, const char*);

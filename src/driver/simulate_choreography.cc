@@ -88,7 +88,11 @@ class Simulation {
       ProgressLine line;
       const base::StopToken stop;
       const InterruptScope interrupt(stop);
-      problem = options_.runs == 1 ? One(*staged, stop, line) : Many(stop, line);
+      if (options_.runs == 1) {
+        problem = One(*staged, stop, line);
+      } else {
+        Many(stop, line);
+      }
     }
     seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (!problem.empty())
@@ -100,7 +104,10 @@ class Simulation {
 
  private:
   std::string One(const runs::StagedChoreography& staged, const base::StopToken& stop, ProgressLine& line) {
-    sim::motions::ChoreographyOptions run{options_.seed, options_.duration, stop, {}};
+    sim::motions::ChoreographyOptions run;
+    run.seed = options_.seed;
+    run.duration = options_.duration;
+    run.stop = stop;
     auto last = std::chrono::steady_clock::now();
     run.progress = [&](double time, double end) {
       const auto now = std::chrono::steady_clock::now();
@@ -119,31 +126,29 @@ class Simulation {
   }
 
   // Each thread has a choreography of its own: motions become terms as they are called.
-  std::string Many(const base::StopToken& stop, ProgressLine& line) {
-    const unsigned jobs =
-        options_.jobs == 0 ? std::max(1U, std::thread::hardware_concurrency()) : options_.jobs;
+  void Many(const base::StopToken& stop, ProgressLine& line) {
+    const uint64_t cores = std::max(1U, std::thread::hardware_concurrency());
+    const auto jobs = static_cast<unsigned>(
+        std::min({options_.runs, options_.jobs == 0 ? cores : options_.jobs, 4 * cores}));
     std::atomic<uint64_t> next{0}, done{0};
     std::mutex mutex;
-    std::string problem;
     base::ParallelFor(jobs, jobs, [&](size_t) {
+      if (stop.StopRequested()) return;
       workspace::Session session;
       const auto staged = runs::StageChoreography(options_.files, session);
       while (staged && !stop.StopRequested()) {
         const uint64_t k = next++;
         if (k >= options_.runs) return;
-        const auto report = sim::motions::RunChoreography(
-            staged->cast, {options_.seed + k, options_.duration, stop, {}}, nullptr);
+        sim::motions::ChoreographyOptions run;
+        run.seed = options_.seed + k;
+        run.duration = options_.duration;
+        run.stop = stop;
+        const auto report = sim::motions::RunChoreography(staged->cast, run, nullptr);
         const std::lock_guard lock(mutex);
-        if (!report.ok()) {
-          problem = report.error().message;
-          stop.RequestStop();
-          return;
-        }
-        all_.Add(options_.seed + k, report.value());
+        all_.Add(options_.seed + k, report);
         line.Show(fmt::format("[{} of {} runs]", ++done, options_.runs));
       }
     });
-    return problem;
   }
 
   ExitStatus Tell(const std::string& name, size_t robots) const {

@@ -82,6 +82,8 @@ double Numeric::Miss(TermId formula, bool positive) {
   constexpr double kFalse = std::numeric_limits<double>::infinity();
   const auto difference = [&] { return (*this)(arena_.arg(formula, 0)) - (*this)(arena_.arg(formula, 1)); };
   const auto above = [](double d) { return d > 0 ? d : d <= 0 ? 0 : kFalse; };
+  // Of what is strict: equal is not enough, by next to nothing.
+  const auto beyond = [&](double d) { return d == 0 ? std::numeric_limits<double>::denorm_min() : above(d); };
   const Op op = arena_.op(formula);
   switch (op) {
     case Op::kBool:
@@ -112,8 +114,9 @@ double Numeric::Miss(TermId formula, bool positive) {
       return d > 0 ? 0 : kFalse;
     }
     case Op::kLe:
+      return positive ? above(difference()) : beyond(-difference());
     case Op::kLt:
-      return positive ? above(difference()) : above(-difference());
+      return positive ? beyond(difference()) : above(-difference());
     default:
       break;
   }

@@ -8,6 +8,7 @@
 
 #include "runs/trace_copy.h"
 #include "sim/draw/history.h"
+#include "sim/draw/stage_history.h"
 
 namespace rondo::runs {
 
@@ -73,12 +74,17 @@ json RecordOf(const ChoreographyFiles& files, const StagedChoreography& staged,
 base::Result<sim::motions::ChoreographyReport> RecordChoreography(
     const StagedChoreography& staged, const sim::motions::ChoreographyOptions& options, const json& record,
     const std::string& path) {
+  std::error_code ignored;
+  const json texts = record.value("texts", json::object());
+  for (const auto& [source, text] : texts.items()) {
+    if (std::filesystem::equivalent(source, path, ignored))
+      return base::Error{fmt::format("`{}` is what is simulated: the trace would take its place", path)};
+  }
   auto opened = trace::Writer::Open(path);
   if (!opened.ok()) return base::Error{fmt::format("cannot write `{}`: {}", path, opened.error().message)};
   trace::Writer writer = std::move(opened).value();
   sim::motions::StageRecorder recorder(writer, *staged.cast.graph, staged.module->arena, record);
-  auto report = sim::motions::RunChoreography(staged.cast, options, &recorder);
-  if (!report.ok()) return report;
+  const auto report = sim::motions::RunChoreography(staged.cast, options, &recorder);
   const auto done = writer.Finish();
   if (!done.ok()) return base::Error{fmt::format("cannot write `{}`: {}", path, done.error().message)};
   return report;
@@ -112,15 +118,22 @@ Replayed ReplayChoreography(const std::string& bytes, const json& record, worksp
   if (!record.contains("seed") || !record["seed"].is_number_unsigned() || !record.contains("duration") ||
       !record["duration"].is_number())
     return {false, "the record of the run is damaged"};
-  const sim::motions::ChoreographyOptions options{
-      record["seed"].get<uint64_t>(), record["duration"].get<double>(), replay.stop, replay.progress};
+  sim::motions::ChoreographyOptions options;
+  options.seed = record["seed"].get<uint64_t>();
+  options.duration = record["duration"].get<double>();
+  options.stop = replay.stop;
+  options.progress = replay.progress;
+  const auto history = sim::ReadStageHistory(bytes);
+  if (!history.ok()) return {false, history.error().message};
+  if (history.value().why == Name(sim::motions::Curtain::kInterrupted))
+    options.interrupt_at = history.value().end - 0.5e-9;  // nanoseconds, as seconds
   base::Result<sim::motions::ChoreographyReport> report = base::Error{};
   const auto fresh = CopyOf([&](const std::string& path) -> base::Result<bool> {
     report = RecordChoreography(*staged, options, record, path);
     return report.ok() ? base::Result<bool>(true) : report.error();
   });
   if (!fresh.ok()) return {false, fresh.error().message};
-  if (report.value().ended == sim::motions::Curtain::kInterrupted) return {false, "interrupted", true};
+  if (replay.stop.StopRequested()) return {false, "interrupted", true};
   if (fresh.value() == bytes)
     return {true,
             fmt::format("the same run, bit for bit: {:.6g} s, {} messages, {} motions, {} bytes",

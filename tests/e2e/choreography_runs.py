@@ -8,9 +8,11 @@ RONDO_CASES: how many runs of each example, for a longer search.
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
@@ -66,7 +68,7 @@ def faults(folder):
         path = place / f"{example}.rondo"
         path.write_text(faulty(example, old, new, kind))
         # Of some only every fifth run shows them.
-        status, report = simulate(path, "--runs", RUNS or 6, "--duration", 30)
+        status, report = simulate(path, "--runs", RUNS or (20 if kind == "choreo-no-alternative" else 6), "--duration", 30)
         if kind == "choreo-contract":
             check(name, status == 3 and set(report["ended"]) == {"lost"} and "may end" in report["lost"], report)
             continue
@@ -80,6 +82,15 @@ def faults(folder):
             check(f"{name} by its seed", status == 1 and same and same[0]["first"] == first["first"], alone)
     status, report = simulate(place / "handover.rondo", "--choreography", "Nothing")
     check("another name", status == 1 and "no choreography `Nothing`" in report["diagnostics"][0]["message"], report)
+
+
+def cases():
+    """Small ones that were once wrong: alarms without a reason, faults that did not show, crashes."""
+    for path in sorted((pathlib.Path(__file__).parent / "choreographies").glob("*.rondo")):
+        wanted, *kinds = path.read_text().split("\n", 1)[0].removeprefix("# runs: ").split()
+        status, report = simulate(path, "--runs", RUNS or 30, "--duration", 30)
+        shown = {i["kind"] for i in report["incidents"]}
+        check(path.name, status == int(wanted) and set(kinds) <= shown and (kinds or not shown), status, report)
 
 
 def traces(folder):
@@ -114,6 +125,22 @@ def traces(folder):
     check("a flipped bit", done.returncode == 1, done.stdout, done.stderr)
     done = run("simulate", EXAMPLES / "handover.rondo", "--trace", folder)
     check("a folder for a trace", done.returncode == 1 and "cannot write" in done.stderr, done.stderr)
+    # A run that was interrupted is made again up to there.
+    cut = pathlib.Path(folder) / "cut.mcap"
+    process = subprocess.Popen([RONDO, "simulate", EXAMPLES / "producer.rondo", "--duration", "1e6", "--trace", cut], stdout=subprocess.DEVNULL)
+    while process.poll() is None and not (cut.with_suffix(".mcap.partial").exists() and cut.with_suffix(".mcap.partial").stat().st_size > 100_000):
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    check("interrupted", process.wait(60) == 3)
+    done = run("replay", cut)
+    check("replay of what was interrupted", done.returncode == 0 and "the same run" in done.stdout, done.stdout, done.stderr)
+    own = pathlib.Path(folder) / "own.rondo"
+    own.write_text((pathlib.Path(__file__).parent / "choreographies/fast.rondo").read_text())
+    done = run("simulate", own, "--trace", own)
+    check("a trace over its source", done.returncode == 1 and own.read_text().startswith("# runs"), done.stderr)
+    for args in (["--seed", "-1"], ["--duration", "nan"], ["--runs", "0"]):
+        done = run("simulate", own, *args)
+        check(f"{args}", done.returncode == 2, done.stderr)
     for args, wanted in ((["--runs", "3", "--trace", trace], "--trace"), (["--fleet", "x.toml"], "only Koord programs"),
                          (["--network", "x.toml"], "only Koord programs")):
         done = run("simulate", EXAMPLES / "handover.rondo", *args)
@@ -135,6 +162,7 @@ def ros_messages(path):
 with tempfile.TemporaryDirectory() as folder:
     examples()
     faults(folder)
+    cases()
     traces(folder)
 print(f"{results['passed']} passed, {results['failed']} failed")
 sys.exit(1 if results["failed"] else 0)

@@ -24,8 +24,10 @@ bool ProjectionScript::Choose(std::string& problem) {
     const Node& node = graph_[state.chosen];
     expr::Numeric numeric(arena_, senses_.Now());
     std::vector<StateId> possible;
-    for (size_t b = 0; b < state.choice.size(); ++b) {
-      if (numeric.Violation(node.guard_terms[b]) == 0) possible.push_back(state.choice[b].second);
+    for (const double slack : {0.0, kRounding}) {
+      for (size_t b = 0; b < state.choice.size() && (slack == 0 || possible.empty()); ++b) {
+        if (numeric.Violation(node.guard_terms[b]) <= slack) possible.push_back(state.choice[b].second);
+      }
     }
     if (possible.empty()) {
       problem = "no alternative of its choice holds";

@@ -21,6 +21,9 @@ class Senses {
   virtual std::optional<std::vector<double>> Choose(const Node& message) = 0;
 };
 
+/// Is what rounding may make of a comparison that holds: guards are true up to this, if none is true without it (SI units).
+inline constexpr double kRounding = 1e-7;
+
 /// Returns the values of terms in a state: of formulas 0 or 1. Nothing if one has no value.
 std::optional<std::vector<double>> ValuesOf(const expr::Arena& arena, const std::vector<robot::Value>& values,
                                             const expr::Numeric::Point& state);

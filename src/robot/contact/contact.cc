@@ -20,8 +20,7 @@ std::optional<Contact> FindContact(Arena& arena, const Shape& a, const Shape& b,
   }
   auto first = Solid::Of(arena, a, variables), second = Solid::Of(arena, b, variables);
   if (!first || !second) return std::nullopt;
-  first->Place(values);
-  second->Place(values);
+  if (!first->Place(values) || !second->Place(values)) return std::nullopt;
   return first->With(*second, std::numeric_limits<double>::infinity());
 }
 

@@ -4,6 +4,7 @@
 #include <fcl/narrowphase/distance.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -135,8 +136,9 @@ std::optional<Solid> Solid::Of(Arena& arena, const Shape& shape, std::vector<Ter
   return Solid(std::move(all));
 }
 
-void Solid::Place(std::span<const double> values) {
+bool Solid::Place(std::span<const double> values) {
   parts_->evaluate(values, parts_->numbers);
+  if (!std::ranges::all_of(parts_->numbers, [](double n) { return std::isfinite(n); })) return false;
   for (Part& part : parts_->parts) {
     const auto n = std::span<const double>(parts_->numbers).subspan(part.first, part.count);
     const auto sizes = n.subspan(kFrame);
@@ -153,6 +155,7 @@ void Solid::Place(std::span<const double> values) {
     part.object->setTransform(pose);
     part.object->computeAABB();
   }
+  return true;
 }
 
 std::optional<Contact> Solid::With(const Solid& other, double interesting) const {
@@ -163,7 +166,7 @@ std::optional<Contact> Solid::With(const Solid& other, double interesting) const
       const fcl::CollisionObjectd &x = *a.object, &y = *b.object;
       const bool plane = is_plane(x) || is_plane(y);
       const double boxes = plane ? 0 : x.getAABB().distance(y.getAABB());
-      if (boxes >= std::min(interesting, contact.distance)) {
+      if (boxes > 0 && boxes >= std::min(interesting, contact.distance)) {
         contact.distance = std::min(contact.distance, boxes);
         continue;
       }

@@ -34,8 +34,9 @@ class Solid {
   Solid(Solid&&) noexcept;
   Solid& operator=(Solid&&) noexcept;
 
-  /// Puts the shape where it is for these values of its variables.
-  void Place(std::span<const double> values);
+  /// Puts the shape where it is for these values of its variables. Returns false, and leaves it where it was, if it is nowhere:
+  /// something has no value.
+  bool Place(std::span<const double> values);
   /// Returns whether two shapes touch where they stand. A distance of `interesting` metres or more may be told too small,
   /// but not below `interesting`. Nothing if FCL cannot tell: how far from a half-space.
   std::optional<Contact> With(const Solid& other, double interesting) const;

@@ -40,8 +40,14 @@ class ChoreographyRun final : public Audience {
         places_(cast),
         promises_(cast, scene_, random_) {}
 
-  base::Result<ChoreographyReport> Go() {
-    if (!Place()) return base::Error{"no state was found in which the choreography may begin"};
+  ChoreographyReport Go() {
+    if (!Place()) {
+      report_.ended = Curtain::kLost;
+      report_.lost = "no state was found in which the choreography may begin";
+      if (recorder_ != nullptr) recorder_->Finish(0, scene_, report_);
+      return report_;
+    }
+    FindOrder();
     disturbances_.emplace(world_, arena_, scene_, random_);
     contacts_.emplace(world_, arena_, scene_, report_);
     for (size_t r = 0; r < graph_.robots.size(); ++r) {
@@ -84,6 +90,19 @@ class ChoreographyRun final : public Audience {
     return true;
   }
 
+  // Who carries others moves before them.
+  void FindOrder() {
+    std::vector<std::pair<size_t, size_t>> depths;
+    for (size_t r = 0; r < world_.bodies.size(); ++r) {
+      size_t depth = 0;
+      for (auto parent = world_.bodies[r].parent; parent; parent = world_.bodies[*parent].parent) ++depth;
+      depths.emplace_back(depth, r);
+    }
+    std::ranges::sort(depths);
+    for (const auto& [depth, r] : depths) order_.push_back(r);
+    stood_since_.resize(order_.size());
+  }
+
   // -- what happens
 
   void Tell(Wrong wrong, const std::string& what) {
@@ -103,8 +122,22 @@ class ChoreographyRun final : public Audience {
     if (miss > Condition::kTolerance)
       Tell(Wrong::kPrecondition,
            fmt::format("the precondition of `{}` does not hold where it begins", motion.code().text));
-    places_.Moves(choreo::RobotId(motion.code().robot));
+    const choreo::RobotId robot(motion.code().robot);
+    places_.Moves(robot);
+    motion.LastAtLeast(LeastOf(places_.StepsOf(robot)));
     if (recorder_ != nullptr) recorder_->Begins(time_, motion.code());
+  }
+
+  // A joint motion lasts as long as the motion of it that takes longest, at least.
+  double LeastOf(const std::vector<choreo::NodeId>& steps) const {
+    double least = steps.empty() ? 0 : kInfinity;
+    for (const choreo::NodeId step : steps) {
+      double longest = 0;
+      for (const choreo::Part& part : graph_[step].parts)
+        longest = std::max(longest, part.duration.least.ToDouble());
+      least = std::min(least, longest);
+    }
+    return least;
   }
 
   void Ends(const MotionRun& motion) override {
@@ -142,7 +175,7 @@ class ChoreographyRun final : public Audience {
   // -- time
 
   void Advance() {
-    double until = time_ + kLook;
+    double until = std::min(time_ + kLook, std::max(options_.duration, time_));
     for (const auto& performer : performers_) {
       const MotionRun* motion = performer->motion();
       if (motion == nullptr) continue;
@@ -153,10 +186,8 @@ class ChoreographyRun final : public Audience {
     now_ = next;
     time_ = static_cast<double>(now_) * 1e-9;
     Disturb();
-    for (const auto& performer : performers_) {
-      MotionRun* motion = performer->motion();
-      if (motion == nullptr) continue;
-      motion->To(motion->time() + dt);
+    for (const size_t r : order_) {
+      if (MotionRun* motion = performers_[r]->motion()) motion->To(motion->time() + dt);
     }
   }
 
@@ -249,12 +280,20 @@ class ChoreographyRun final : public Audience {
       Tell(Wrong::kStuck, Waiting());
       return End(Curtain::kFailed);
     }
-    if (options_.stop.StopRequested()) return End(Curtain::kInterrupted);
+    if (options_.stop.StopRequested() || time_ >= options_.interrupt_at) return End(Curtain::kInterrupted);
     if (time_ >= options_.duration) return End(Curtain::kTime);
     for (size_t r = 0; r < performers_.size(); ++r) {
-      if (!Stands(*performers_[r])) continue;
-      Tell(Wrong::kWaiting,
-           fmt::format("time passes for `{}`, which makes no motion", graph_.NameOf(choreo::RobotId(r))));
+      // Moments are rounded to nanoseconds, each of them: threads drift apart a little.
+      constexpr double kDrift = 1e-6;
+      std::optional<double>& since = stood_since_[r];
+      if (!Stands(*performers_[r])) {
+        since.reset();
+      } else if (!since) {
+        since = time_;
+      } else if (time_ > *since + kDrift) {
+        Tell(Wrong::kWaiting,
+             fmt::format("time passes for `{}`, which makes no motion", graph_.NameOf(choreo::RobotId(r))));
+      }
     }
     if (options_.progress) options_.progress(time_, options_.duration);
     return false;
@@ -294,14 +333,16 @@ class ChoreographyRun final : public Audience {
   std::optional<Contacts> contacts_;
   std::vector<std::unique_ptr<Performer>> performers_;
   ChoreographyReport report_;
-  Time now_ = 0;     // nanoseconds
-  double time_ = 0;  // the same in seconds
+  std::vector<size_t> order_;                       // of the robots, to move
+  std::vector<std::optional<double>> stood_since_;  // by robot, seconds
+  Time now_ = 0;                                    // nanoseconds
+  double time_ = 0;                                 // the same in seconds
 };
 
 }  // namespace
 
-base::Result<ChoreographyReport> RunChoreography(const choreo::Cast& cast, const ChoreographyOptions& options,
-                                                 StageRecorder* recorder) {
+ChoreographyReport RunChoreography(const choreo::Cast& cast, const ChoreographyOptions& options,
+                                   StageRecorder* recorder) {
   return ChoreographyRun(cast, options, recorder).Go();
 }
 

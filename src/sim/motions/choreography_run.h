@@ -1,7 +1,7 @@
 #pragma once
 
 #include <functional>
-#include <optional>
+#include <limits>
 #include <string>
 
 #include "base/stop.h"
@@ -17,6 +17,8 @@ struct ChoreographyOptions {
   double duration = 60;  ///< virtual seconds, at most
   base::StopToken stop;
   std::function<void(double time, double end)> progress;
+  double interrupt_at =
+      std::numeric_limits<double>::infinity();  ///< virtual seconds: as a run that was interrupted then
 };
 
 /// Runs a choreography in virtual time: the session core of each robot, unchanged, on messages that arrive at once, and
@@ -25,8 +27,7 @@ struct ChoreographyOptions {
 /// several alternatives is taken: all of it is drawn from the seed.
 ///
 /// @param recorder  what happens is written to it; nullptr: to nothing
-/// @error says what cannot be simulated: no state that `initially` allows was found.
-base::Result<ChoreographyReport> RunChoreography(const choreo::Cast& cast, const ChoreographyOptions& options,
-                                                 StageRecorder* recorder);
+ChoreographyReport RunChoreography(const choreo::Cast& cast, const ChoreographyOptions& options,
+                                   StageRecorder* recorder);
 
 }  // namespace rondo::sim::motions

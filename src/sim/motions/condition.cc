@@ -67,13 +67,13 @@ void Condition::Violated(size_t node, std::span<const double> terms, std::vector
 
 bool Condition::Approach(std::span<double> values, std::span<const size_t> free) {
   constexpr int kSteps = 60, kHalvings = 6;
-  constexpr double kDifference = 1e-7, kGood = kTolerance / 10;
+  constexpr double kDifference = 1e-7;
   const auto n = static_cast<Eigen::Index>(free.size());
   std::vector<double> before;
   for (int step = 0; step < kSteps; ++step) {
     const auto terms = terms_(values);
     const double miss = Miss(formula_.root, terms);
-    if (miss <= kGood) return true;
+    if (miss <= 0) return true;
     std::vector<size_t> atoms;
     Violated(formula_.root, terms, atoms);
     if (atoms.empty() || free.empty()) return false;
@@ -100,6 +100,10 @@ bool Condition::Approach(std::span<double> values, std::span<const size_t> free)
         values[free[static_cast<size_t>(j)]] = before[static_cast<size_t>(j)] - share * way(j);
       if (Miss(values) < miss) break;
     }
+    if (miss > kTolerance || Miss(values) < miss) continue;
+    // Good enough, and rounding lets it get no better.
+    for (size_t j = 0; j < free.size(); ++j) values[free[j]] = before[j];
+    return true;
   }
   return Holds(values);
 }

@@ -8,7 +8,8 @@ namespace rondo::sim::motions {
 
 Contacts::Contacts(const robot::World& world, expr::Arena& arena, const SceneState& scene,
                    ChoreographyReport& report)
-    : robots_(world.bodies.size()), report_(report) {
+    : robots_(world.bodies.size()), stands_(robots_), asks_(robots_), report_(report) {
+  things_.reserve(robots_ + world.obstacles.size());  // others point to them
   const auto add = [&](const std::string& name, const robot::Shape* shape) {
     things_.push_back({name, std::nullopt});
     if (shape != nullptr) things_.back().solid = robot::Solid::Of(arena, *shape, scene.variables());
@@ -17,39 +18,46 @@ Contacts::Contacts(const robot::World& world, expr::Arena& arena, const SceneSta
   for (const robot::Body& body : world.bodies) add(body.name.text, body.body ? &*body.body : nullptr);
   for (const robot::Obstacle& o : world.obstacles) {
     add(o.name.text, &o.shape);
-    if (things_.back().solid) things_.back().solid->Place(scene.values());
+    const bool stands = things_.back().solid && things_.back().solid->Place(scene.values());
+    // What obstacles ask for is what they are.
+    stands_.push_back(stands);
+    asks_.push_back(stands ? &*things_.back().solid : nullptr);
   }
 }
 
 void Contacts::Look(SceneState& scene, const std::vector<MotionRun*>& motions, const Tell& tell) {
   for (size_t i = 0; i < robots_; ++i) {
-    if (things_[i].solid) things_[i].solid->Place(scene.values());
-    if (motions[i] == nullptr || !motions[i]->code().footprint) continue;
+    stands_[i] = things_[i].solid && things_[i].solid->Place(scene.values());
+    if (things_[i].solid && !stands_[i])
+      Unchecked(fmt::format("where `{}` is: it has no value there", things_[i].name));
+    asks_[i] = nullptr;
+    if (motions[i] == nullptr) continue;
+    MotionCode& motion = motions[i]->code();
+    if (motion.unseen) Unchecked(fmt::format("the footprint of `{}`", motion.text));
     scene.SetClock(motions[i]->time());
-    motions[i]->code().footprint->Place(scene.values());
+    if (motion.footprint && motion.footprint->Place(scene.values())) asks_[i] = &*motion.footprint;
   }
   for (size_t i = 0; i < robots_; ++i) {
-    for (size_t j = i + 1; j < things_.size(); ++j) Pair(i, j, motions, tell);
+    for (size_t j = i + 1; j < things_.size(); ++j) Pair(i, j, tell);
   }
 }
 
-// What obstacles ask for is what they are.
-const robot::Solid* Contacts::FootprintOf(size_t thing, const std::vector<MotionRun*>& motions) const {
-  if (thing >= robots_) return &*things_[thing].solid;
-  if (motions[thing] == nullptr || !motions[thing]->code().footprint) return nullptr;
-  return &*motions[thing]->code().footprint;
+void Contacts::Unchecked(const std::string& what) {
+  if (std::ranges::find(report_.unchecked, what) == report_.unchecked.end())
+    report_.unchecked.push_back(what);
 }
 
-void Contacts::Pair(size_t a, size_t b, const std::vector<MotionRun*>& motions, const Tell& tell) {
-  constexpr double kNear = 0.5;  // metres: of bodies that are farther apart, footprints do not meet
-  if (!things_[a].solid || !things_[b].solid) return;
-  double& least = b < robots_ ? report_.least_between_robots : report_.least_to_obstacles;
-  const auto contact = things_[a].solid->With(*things_[b].solid, std::min(least, kNear));
-  Touch(Wrong::kCollision, a, b, contact && contact->touches, tell);
-  if (contact) least = std::min(least, contact->distance);
-  const robot::Solid *x = FootprintOf(a, motions), *y = FootprintOf(b, motions);
-  const bool near = !contact || contact->distance < kNear;
-  const auto meeting = near && x != nullptr && y != nullptr ? x->With(*y, 0) : std::nullopt;
+void Contacts::Pair(size_t a, size_t b, const Tell& tell) {
+  constexpr double kNear =
+      0.5;  // metres: how far apart those are that are farther, nobody needs to know exactly
+  if (stands_[a] && stands_[b]) {
+    double& least = b < robots_ ? report_.least_between_robots : report_.least_to_obstacles;
+    const auto contact = things_[a].solid->With(*things_[b].solid, std::min(least, kNear));
+    Touch(Wrong::kCollision, a, b, contact && contact->touches, tell);
+    if (contact) least = std::min(least, contact->distance);
+  }
+  if (asks_[a] == nullptr || asks_[b] == nullptr) return;
+  const auto meeting = asks_[a]->With(*asks_[b], 0);
   Touch(Wrong::kFootprint, a, b, meeting && meeting->touches, tell);
 }
 

@@ -3,6 +3,7 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "robot/contact/solid.h"
@@ -29,12 +30,14 @@ class Contacts {
     std::string name;
     std::optional<robot::Solid> solid;
   };
-  void Pair(size_t a, size_t b, const std::vector<MotionRun*>& motions, const Tell& tell);
-  const robot::Solid* FootprintOf(size_t thing, const std::vector<MotionRun*>& motions) const;
+  void Pair(size_t a, size_t b, const Tell& tell);
+  void Unchecked(const std::string& what);
   void Touch(Wrong wrong, size_t a, size_t b, bool touches, const Tell& tell);
 
   std::vector<Thing> things_;  // robots, then obstacles
   size_t robots_ = 0;
+  std::vector<bool> stands_;               // by thing: it has a place now
+  std::vector<const robot::Solid*> asks_;  // by thing: the space that it asks for now; nullptr: none
   std::set<std::tuple<Wrong, size_t, size_t>> touching_;
   ChoreographyReport& report_;
 };

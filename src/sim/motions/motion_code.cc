@@ -53,9 +53,11 @@ class Coder {
                     std::move(*all_along),
                     std::move(*end),
                     std::nullopt,
+                    false,
                     std::nullopt};
     const auto& footprint = c.footprint ? c.footprint : body_.body;
     if (footprint) code.footprint = robot::Solid::Of(arena_, *footprint, scene_.variables());
+    code.unseen = footprint && !code.footprint;
     if (instance_.control && HasDynamics()) code.drive = Drive(*instance_.control);
     if (!problem_.empty()) return base::Error{problem_};
     return code;
@@ -107,8 +109,11 @@ class Coder {
 
   std::optional<DriveCode> Drive(const robot::Control& control) {
     std::vector<std::pair<TermId, TermId>> rates;
-    for (size_t i = 0; i < body_.states.size(); ++i)
+    // What a motion does not modify stays as it is.
+    for (size_t i = 0; i < body_.states.size(); ++i) {
+      if (i >= instance_.contract.modifies.size() || !instance_.contract.modifies[i]) continue;
       rates.emplace_back(body_.states[i].term, Determined(control, *body_.derivatives[i]));
+    }
     auto flow = Assigned(rates);
     auto laws = Assigned(control.laws);
     if (!flow || !laws) return std::nullopt;

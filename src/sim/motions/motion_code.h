@@ -43,6 +43,7 @@ struct MotionCode {
   Condition during;  ///< with the ranges of the states
   Condition end;     ///< `during` and `post` together
   std::optional<robot::Solid> footprint;
+  bool unseen = false;             ///< it has a footprint, of which contacts cannot be told
   std::optional<DriveCode> drive;  ///< if its model has dynamics and a controller
 };
 

@@ -21,6 +21,8 @@ class MotionRun {
 
   /// Lets time pass until this many seconds after it began, and moves the robot; others stand where they are in the scene.
   void To(double seconds);
+  /// Says how long the joint motion that it belongs to lasts at least: before, the robot does not go on by itself.
+  void LastAtLeast(double seconds) { ready_ = std::min(over_, std::max(ready_, seconds)); }
   /// Lets the robot be content to go on from now on: somebody of its joint motion has come to an end, so that it may not last.
   void Urge() { ready_ = std::min(ready_, std::max(time_, code_.least)); }
   /// Tells how far it is now.
@@ -42,7 +44,9 @@ class MotionRun {
   void ChooseTimes();
   void ChooseGoal();
   void ChooseWay();
-  void Follow(double dt);
+  std::vector<double> GuessAt(double time) const;
+  double Step(Condition& wanted, const std::vector<double>& guess, const std::vector<double>& before);
+  bool Follow(double dt, int halvings);
   void Drive(double until);
   void Act();
   void Flow(double dt);
@@ -59,7 +63,6 @@ class MotionRun {
   double resolution_;
   std::vector<double> start_, goal_, swing_, turns_;  // of the free states
   double pace_ = 0;                                   // how uneven it goes
-  double fastest_ = 0;                                // of any free state, per second
   double samples_ = 0;                                // how often the controller has acted
   std::vector<bool> happened_;                        // by event: its condition held before
   std::string lost_, broken_;

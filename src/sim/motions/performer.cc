@@ -1,8 +1,10 @@
 #include "sim/motions/performer.h"
 
-#include <algorithm>
-#include <cmath>
+#include <fmt/format.h>
 
+#include <algorithm>
+
+#include "choreo/prove/sampler.h"
 #include "expr/substitute.h"
 
 namespace rondo::sim::motions {
@@ -76,35 +78,35 @@ void Performer::Halt() {
 
 const expr::Numeric::Point& Performer::Now() { return now_ = scene_.Point(); }
 
-// Numbers, one after the other, until the refinement holds.
+// Bools first; then numbers that satisfy what is left, as the state is.
 std::optional<std::vector<double>> Performer::Choose(const choreo::Node& message) {
   expr::Arena& arena = cast_.declarations->evaluator().arena();
-  std::vector<expr::TermId> open;
-  for (size_t i = 0; i < message.payload.size(); ++i) {
-    if (message.names[i].empty()) continue;
-    for (const expr::TermId t : message.payload[i].terms) open.push_back(t);
-  }
-  constexpr int kTries = 1000;
+  const expr::Numeric::Point now = scene_.Point();
+  expr::Substitution known;
+  for (const auto& [variable, value] : now)
+    known.emplace(variable, arena.Number(arena.Real(), expr::Rational::FromDouble(value)));
+  const expr::TermId refinement = expr::Substitute(arena, message.refinement, known);
+  constexpr int kTries = 20, kDraws = 200;
   for (int i = 0; i < kTries; ++i) {
-    expr::Numeric::Point point = scene_.Point();
     expr::Substitution formulas;
-    for (const expr::TermId t : open) {
-      if (arena.sort_of(t) == arena.Bool()) {
-        formulas.emplace(t, arena.Constant(random_() % 2 == 0));
-        continue;
+    for (const robot::Value& value : message.payload) {
+      for (const expr::TermId t : value.terms) {
+        if (arena.op(t) == expr::Op::kVariable && arena.sort_of(t) == arena.Bool())
+          formulas.emplace(t, arena.Constant(random_() % 2 == 0));
       }
-      // Small numbers of either sign, often whole ones.
-      const double x = Between(random_, -1, 1) * std::pow(10, Between(random_, -1, 2));
-      point[t] = random_() % 2 == 0 ? x : std::round(x);
     }
-    const expr::TermId refinement = expr::Substitute(arena, message.refinement, formulas);
-    if (expr::Numeric(arena, point).Violation(refinement) > 0) continue;
+    const expr::TermId wanted = expr::Substitute(arena, refinement, formulas);
+    const auto drawn = choreo::Sampler(arena, wanted).Draw(random_, kDraws);
+    if (!drawn) continue;
+    expr::Numeric::Point point = now;
+    for (const auto& [variable, value] : *drawn) point.insert_or_assign(variable, value);
     std::vector<robot::Value> payload = message.payload;
     for (robot::Value& value : payload) {
       for (expr::TermId& t : value.terms) t = expr::Substitute(arena, t, formulas);
     }
-    return choreo::ValuesOf(arena, payload, point);
+    if (auto values = choreo::ValuesOf(arena, payload, point)) return values;
   }
+  problem_ = fmt::format("no value was found that `{}` may carry", message.label);
   return std::nullopt;
 }
 

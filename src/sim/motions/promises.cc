@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "expr/numeric.h"
+#include "expr/substitute.h"
 
 namespace rondo::sim::motions {
 
@@ -102,6 +103,7 @@ std::vector<std::vector<double>> Promises::PointsOf(const robot::Solid& footprin
         values.push_back(part.frame[9 + row]);
         for (size_t k = 0; k < 3; ++k) values.back() += part.frame[3 * row + k] * (*p)[k];
       }
+      if (!std::isfinite(values.back())) points.pop_back();
     }
   }
   return points;
@@ -153,20 +155,31 @@ void Promises::Look(SceneState& scene, const std::vector<NodeId>& nodes, const s
                     const Tell& tell) {
   const choreo::Graph& graph = *cast_.graph;
   expr::Arena& arena = cast_.declarations->evaluator().arena();
-  expr::Numeric::Point point = scene.Point();
-  double when = std::numeric_limits<double>::infinity(), refinement = when;
+  const expr::Numeric::Point now = scene.Point();
+  double when = std::numeric_limits<double>::infinity(), carries = when;
   for (const NodeId id : nodes) {
     const Node& node = graph[id];
+    expr::Numeric::Point point = now;
+    expr::Substitution bools;
+    double other = 0;  // by how much known values are others
     size_t at = 0;
-    for (const robot::Value& value : node.payload) {
-      for (const expr::TermId t : value.terms) {
-        if (at < values.size() && arena.op(t) == expr::Op::kVariable) point.insert_or_assign(t, values[at]);
-        ++at;
+    for (size_t i = 0; i < node.payload.size(); ++i) {
+      const auto expected = choreo::ValuesOf(arena, {node.payload[i]}, now);
+      for (size_t k = 0; k < node.payload[i].terms.size() && at < values.size(); ++k, ++at) {
+        const expr::TermId t = node.payload[i].terms[k];
+        if (node.names[i].empty()) {
+          if (expected) other = std::max(other, std::abs((*expected)[k] - values[at]));
+        } else if (arena.sort_of(t) == arena.Bool()) {
+          bools.emplace(t, arena.Constant(values[at] != 0));
+        } else {
+          point.insert_or_assign(t, values[at]);
+        }
       }
     }
     expr::Numeric numeric(arena, point);
     when = std::min(when, numeric.Violation(node.when));
-    refinement = std::min(refinement, numeric.Violation(node.refinement));
+    carries = std::min(carries,
+                       std::max(other, numeric.Violation(expr::Substitute(arena, node.refinement, bools))));
   }
   if (nodes.empty()) return;
   const Node& node = graph[nodes[0]];
@@ -174,8 +187,8 @@ void Promises::Look(SceneState& scene, const std::vector<NodeId>& nodes, const s
       fmt::format("`{}` from `{}` to `{}`", node.label, graph.NameOf(node.from), graph.NameOf(node.to));
   if (when > Condition::kTolerance)
     tell(Wrong::kMessage, fmt::format("the guard of {} does not hold", message));
-  if (refinement > Condition::kTolerance)
-    tell(Wrong::kMessage, fmt::format("{} does not carry what it promises", message));
+  if (carries > Condition::kTolerance)
+    tell(Wrong::kMessage, fmt::format("{} does not carry what the choreography says", message));
 }
 
 }  // namespace rondo::sim::motions
