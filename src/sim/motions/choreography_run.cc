@@ -141,6 +141,7 @@ class ChoreographyRun final : public Audience {
   }
 
   void Ends(const MotionRun& motion) override {
+    if (!motion.broken().empty()) Tell(Wrong::kContract, motion.broken());
     if (recorder_ != nullptr) recorder_->Ends(time_, motion.code());
   }
 
