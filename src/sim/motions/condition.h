@@ -23,7 +23,6 @@ class Functions {
                                     const std::vector<expr::TermId>& variables);
   /// Returns the values of the terms; valid until the next call.
   std::span<const double> operator()(std::span<const double> variables);
-  size_t size() const { return values_.size(); }
 
  private:
   struct Code {
