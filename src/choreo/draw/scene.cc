@@ -96,6 +96,24 @@ class View {
     svg_.Line(X(x) - 7, Y(y) + 7, X(x) + 7, Y(y) - 7, "#d00000");
   }
 
+  // In the middle of the outline, or as near below or above as there is room beside other names.
+  void Label(const Outline& outline, const std::string& name) {
+    constexpr double kLine = 13, kGap = 4;
+    if (name.empty()) return;
+    double x = 0, y = 0;
+    for (const auto& p : outline) x += X(p[0]) / kDirectionCount, y += Y(p[1]) / kDirectionCount;
+    const double width = Svg::WidthOf(name);
+    const auto taken = [&](double at) {
+      return std::ranges::any_of(labels_, [&](const auto& l) {
+        return std::abs(l[0] - x) < (l[2] + width) / 2 + kGap && std::abs(l[1] - at) < kLine;
+      });
+    };
+    double at = y + kGap;
+    for (int k = 1; taken(at) && k < 20; ++k) at = y + kGap + (k % 2 == 1 ? (k + 1) / 2 : -k / 2) * kLine;
+    labels_.push_back({x, at, width});
+    svg_.Text(x, at, name, Svg::Anchor::kMiddle, 120);
+  }
+
  private:
   // The next multiple of `step`.
   static double Up(double v, double step) { return std::ceil(v / step) * step; }
@@ -113,6 +131,7 @@ class View {
   double left_;
   Range x_, y_;
   double scale_;
+  std::vector<std::array<double, 3>> labels_;  // places and widths
 };
 
 }  // namespace
@@ -144,12 +163,9 @@ std::string DrawScene(expr::Arena& arena, const std::vector<Drawn>& shapes, cons
     view.Axes(names[v], axes[v]);
     for (size_t i = 0; i < shapes.size(); ++i) {
       for (const Outline& o : views[v][i]) view.Draw(o, shapes[i]);
-      if (!views[v][i].empty()) {
-        const Outline& o = views[v][i][0];
-        double px = 0, py = 0;
-        for (const auto& p : o) px += p[0] / kDirectionCount, py += p[1] / kDirectionCount;
-        svg.Text(view.X(px), view.Y(py) + 4, shapes[i].name, Svg::Anchor::kMiddle, 120);
-      }
+    }
+    for (size_t i = 0; i < shapes.size(); ++i) {
+      if (!views[v][i].empty()) view.Label(views[v][i][0], shapes[i].name);
     }
     if (mark) view.Mark((*mark)[0], (*mark)[v + 1]);
   }
