@@ -55,7 +55,7 @@ def examples():
         if example.read_text().split("\n", 1)[0] != "# check: ok":
             continue
         for more in ([], ["--projections"]):
-            status, report = simulate(example, "--runs", RUNS or 2, "--seed", 1, "--duration", 60 if RUNS else 20, *more)
+            status, report = simulate(example, "--runs", RUNS or 1, "--seed", 1, "--duration", 60 if RUNS else 20, *more)
             ended = set(report["ended"]) <= {"end", "time"}
             check(f"{example.name} {more}", status == 0 and not report["incidents"] and ended and report["motions"] > 0, report)
 
@@ -68,7 +68,7 @@ def faults(folder):
         path = place / f"{example}.rondo"
         path.write_text(faulty(example, old, new, kind))
         # Of some only every fifth run shows them.
-        status, report = simulate(path, "--runs", RUNS or (20 if kind == "choreo-no-alternative" else 6), "--duration", 30)
+        status, report = simulate(path, "--runs", RUNS or {"choreo-no-alternative": 20, "choreo-collision": 6}.get(kind, 2), "--duration", 30)
         if kind == "choreo-contract":
             check(name, status == 3 and set(report["ended"]) == {"lost"} and "may end" in report["lost"], report)
             continue
@@ -88,7 +88,7 @@ def cases():
     """Small ones that were once wrong: alarms without a reason, faults that did not show, crashes."""
     for path in sorted((pathlib.Path(__file__).parent / "choreographies").glob("*.rondo")):
         wanted, *kinds = path.read_text().split("\n", 1)[0].removeprefix("# runs: ").split()
-        status, report = simulate(path, "--runs", RUNS or 30, "--duration", 30)
+        status, report = simulate(path, "--runs", RUNS or (20 if kinds else 5), "--duration", 30)
         shown = {i["kind"] for i in report["incidents"]}
         check(path.name, status == int(wanted) and set(kinds) <= shown and (kinds or not shown), status, report)
 
