@@ -41,7 +41,7 @@ std::string Head(const std::string& name, const std::string& what) {
 
 // `UINT` of `UINT:UINT in [1 - 9]`; the words themselves of a choice between words.
 std::string TypeOf(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
+  std::string type = option.get_type_name();
   const size_t colon = type.find(':');
   if (colon == std::string::npos) return type;
   return type.substr(colon + 1).starts_with('{') ? type.substr(colon + 1) : type.substr(0, colon);

@@ -27,9 +27,12 @@ ExitStatus Run(const Options& options) {
   std::string why = runs::WrongName(name);
   std::vector<std::string> files;
   if (why.empty()) {
-    auto written = runs::WriteProject(folder, name, options.of);
-    if (written.ok()) files = std::move(written).value();
-    if (files.empty()) why = written.error().message;
+    const auto written = runs::WriteProject(folder, name, options.of);
+    if (written.ok()) {
+      files = written.value();
+    } else {
+      why = written.error().message;
+    }
   }
   if (!why.empty()) return Refuse("new", options.folder, options.json, {}, {}, why);
   if (options.json) {

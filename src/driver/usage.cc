@@ -32,7 +32,7 @@ std::string NoSuchOption(const CLI::App& app, const std::vector<std::string>& ar
   }
   std::string called = verb->get_name();
   for (const CLI::App* around = verb->get_parent(); around != nullptr; around = around->get_parent())
-    called = around->get_name() + " " + called;
+    called.insert(0, around->get_name() + " ");
   std::string text;
   for (const std::string& argument : arguments) {
     const std::string name = argument.substr(0, argument.find('='));

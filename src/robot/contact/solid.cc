@@ -147,9 +147,10 @@ bool Solid::Place(std::span<const double> values) {
       part.object.emplace(Make(part.kind, sizes, part.middle));
     }
     fcl::Transform3d pose = fcl::Transform3d::Identity();
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) pose.linear()(i, j) = n[static_cast<size_t>(3 * i + j)];
-      pose.translation()(i) = n[static_cast<size_t>(9 + i)];
+    for (size_t i = 0; i < 3; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      for (size_t j = 0; j < 3; ++j) pose.linear()(row, static_cast<Eigen::Index>(j)) = n[3 * i + j];
+      pose.translation()(row) = n[9 + i];
     }
     pose.translation() += pose.linear() * part.middle;
     part.object->setTransform(pose);

@@ -13,7 +13,7 @@ using nlohmann::json;
 
 namespace {
 
-class Reader {
+class Reader {  // NOLINT(bugprone-exception-escape): moving JSON checks itself
  public:
   base::Result<StageHistory> Read(std::string_view bytes) {
     const auto done = trace::ForEachMessage(bytes, [&](const trace::Message& m) {

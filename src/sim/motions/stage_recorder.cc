@@ -19,9 +19,10 @@ uint64_t Nanoseconds(double time) { return static_cast<uint64_t>(std::llround(ti
 
 Eigen::Isometry3d PoseIn(std::span<const double> n) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) pose.linear()(i, j) = n[static_cast<size_t>(3 * i + j)];
-    pose.translation()(i) = n[static_cast<size_t>(9 + i)];
+  for (size_t i = 0; i < 3; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    for (size_t j = 0; j < 3; ++j) pose.linear()(row, static_cast<Eigen::Index>(j)) = n[3 * i + j];
+    pose.translation()(row) = n[9 + i];
   }
   return pose;
 }
@@ -100,9 +101,8 @@ std::vector<trace::Marker> Markers(const std::string& group, const robot::Solid&
 StageRecorder::StageRecorder(trace::Writer& writer, const choreo::Graph& graph, expr::Arena& arena,
                              const json& run)
     : writer_(writer), graph_(graph), scene_(*graph.world) {
-  const json text = run;
   writer_.Message(Channel("/rondo/run", trace::kRecord, "json"), 0,
-                  text.dump(-1, ' ', false, json::error_handler_t::replace));
+                  run.dump(-1, ' ', false, json::error_handler_t::replace));
   for (const robot::Body& body : graph.world->bodies) {
     Robot& robot = robots_.emplace_back();
     std::vector<expr::TermId> numbers;
