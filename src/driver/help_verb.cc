@@ -23,14 +23,17 @@ struct Options {
 };
 
 ExitStatus WritePages(const CLI::App& app, const std::string& folder) {
-  std::string why = Folder(folder);
-  for (const auto& [name, text] :
-       why.empty() ? ManPages(app) : std::vector<std::pair<std::string, std::string>>{}) {
-    const auto written = base::WriteFileAtomically(std::filesystem::path(folder) / name, text);
-    if (!written.ok()) why = fmt::format("cannot write `{}`: {}", name, written.error().message);
+  if (const std::string why = Folder(folder); !why.empty()) {
+    PrintFailure(why);
+    return ExitStatus::kRejected;
   }
-  if (!why.empty()) PrintFailure(why);
-  return why.empty() ? ExitStatus::kEstablished : ExitStatus::kRejected;
+  for (const auto& [name, text] : ManPages(app)) {
+    const auto written = base::WriteFileAtomically(std::filesystem::path(folder) / name, text);
+    if (written.ok()) continue;
+    PrintFailure(fmt::format("cannot write `{}`: {}", name, written.error().message));
+    return ExitStatus::kRejected;
+  }
+  return ExitStatus::kEstablished;
 }
 
 ExitStatus Help(const CLI::App& app, const Options& options) {
@@ -39,13 +42,12 @@ ExitStatus Help(const CLI::App& app, const Options& options) {
     Print(app.get_formatter()->make_help(&app, "rondo", CLI::AppFormatMode::Normal));
     return ExitStatus::kEstablished;
   }
-  const auto verbs =
-      app.get_subcommands([&](const CLI::App* sub) { return sub->get_name() == options.verb; });
-  if (verbs.empty()) {
+  const CLI::App* verb = FindVerb(app, options.verb);
+  if (verb == nullptr) {
     PrintFailure(NoSuchVerb(app, options.verb));
     return ExitStatus::kUsage;
   }
-  Print(verbs.front()->help("rondo"));
+  Print(verb->help("rondo"));
   return ExitStatus::kEstablished;
 }
 

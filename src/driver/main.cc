@@ -60,9 +60,7 @@ int Main(int argc, char** argv) {
       "exit status: 0 established, 1 wrong input, refuted or not inductive, 2 usage, 3 unknown, 4 a bug of ours");
   for (const auto add : kVerbs) add(app, status);
   const std::string first = argc > 1 ? argv[1] : "-";
-  const bool known =
-      !app.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == first; }).empty();
-  if (!first.starts_with('-') && !known) {
+  if (!first.starts_with('-') && FindVerb(app, first) == nullptr) {
     PrintFailure(NoSuchVerb(app, first));
     return static_cast<int>(Written(ExitStatus::kUsage));
   }

@@ -104,9 +104,7 @@ class Simulation {
 
  private:
   std::string One(const runs::StagedChoreography& staged, const base::StopToken& stop, ProgressLine& line) {
-    sim::motions::ChoreographyOptions run;
-    run.seed = options_.seed;
-    run.duration = options_.duration;
+    sim::motions::ChoreographyOptions run = options_.run;
     run.stop = stop;
     auto last = std::chrono::steady_clock::now();
     run.progress = [&](double time, double end) {
@@ -121,7 +119,7 @@ class Simulation {
             : runs::RecordChoreography(staged, run, runs::RecordOf(options_.files, staged, run, session_),
                                        options_.trace);
     if (!report.ok()) return report.error().message;
-    all_.Add(options_.seed, report.value());
+    all_.Add(options_.run.seed, report.value());
     return "";
   }
 
@@ -139,13 +137,12 @@ class Simulation {
       while (staged && !stop.StopRequested()) {
         const uint64_t k = next++;
         if (k >= options_.runs) return;
-        sim::motions::ChoreographyOptions run;
-        run.seed = options_.seed + k;
-        run.duration = options_.duration;
+        sim::motions::ChoreographyOptions run = options_.run;
+        run.seed += k;
         run.stop = stop;
         const auto report = sim::motions::RunChoreography(staged->cast, run, nullptr);
         const std::lock_guard lock(mutex);
-        all_.Add(options_.seed + k, report);
+        all_.Add(options_.run.seed + k, report);
         line.Show(fmt::format("[{} of {} runs]", ++done, options_.runs));
       }
     });
@@ -163,9 +160,9 @@ class Simulation {
     }
     Print(fmt::format("{}: {}, {}\n{}", name, base::Counted(robots, "robot"),
                       options_.runs == 1
-                          ? fmt::format("seed {}", options_.seed)
+                          ? fmt::format("seed {}", options_.run.seed)
                           : fmt::format("{} of {} runs, seeds {} to {}", all_.runs, options_.runs,
-                                        options_.seed, options_.seed + options_.runs - 1),
+                                        options_.run.seed, options_.run.seed + options_.runs - 1),
                       Text()));
     if (!options_.trace.empty()) Print(fmt::format("trace: {}\n", options_.trace));
     PrintDiagnostics(session_.sources, session_.diagnostics);
@@ -227,7 +224,7 @@ class Simulation {
     return {{"command", "simulate"},
             {"file", options_.files.files.front()},
             {"choreography", name},
-            {"seed", options_.seed},
+            {"seed", options_.run.seed},
             {"runs", all_.runs},
             {"time", all_.time},
             {"messages", all_.messages},

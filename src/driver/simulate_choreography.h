@@ -12,9 +12,8 @@ namespace rondo::driver {
 /// Says what `rondo simulate` is asked about a choreography.
 struct SimulateChoreographyOptions {
   runs::ChoreographyFiles files;
-  uint64_t seed = 1;
-  uint64_t runs = 1;     ///< of the seeds from `seed` on
-  double duration = 60;  ///< virtual seconds, at most
+  sim::motions::ChoreographyOptions run;  ///< of the first run; who stops it and is told of it is left open
+  uint64_t runs = 1;                      ///< of the seeds from its seed on
   unsigned jobs = 0;
   std::string trace;  ///< a file for what happens; empty: none
   bool json = false;

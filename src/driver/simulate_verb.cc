@@ -268,15 +268,14 @@ void RefuseMixture(const Command& verb, bool choreography) {
 }
 
 ExitStatus RunChoreography(const Options& options) {
-  constexpr double kDuration = 60;
-  SimulateChoreographyOptions run{
-      {options.files, options.admitted, options.choreography, options.projections},
-      options.seed.value_or(1),
-      options.runs,
-      options.duration > 0 ? options.duration : kDuration,
-      options.jobs,
-      options.trace,
-      options.json};
+  SimulateChoreographyOptions run;
+  run.files = {options.files, options.admitted, options.choreography, options.projections};
+  run.run.seed = options.seed.value_or(1);
+  if (options.duration > 0) run.run.duration = options.duration;
+  run.runs = options.runs;
+  run.jobs = options.jobs;
+  run.trace = options.trace;
+  run.json = options.json;
   if (options.runs > 1 && !options.trace.empty())
     RefuseOption("--trace", "it is of one run: leave `--runs` out");
   return SimulateChoreography(run);

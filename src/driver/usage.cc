@@ -17,6 +17,11 @@ std::string Meant(const std::string& name, const std::vector<std::string>& names
 
 }  // namespace
 
+const CLI::App* FindVerb(const CLI::App& app, const std::string& name) {
+  const auto verbs = app.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == name; });
+  return verbs.empty() ? nullptr : verbs.front();
+}
+
 std::string NoSuchVerb(const CLI::App& app, const std::string& name) {
   std::vector<std::string> verbs;
   for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());

@@ -10,6 +10,9 @@ class App;
 /// Meets what was mistyped on the command line.
 namespace rondo::driver {
 
+/// Returns the verb of this name; nullptr if there is none.
+const CLI::App* FindVerb(const CLI::App& app, const std::string& name);
+
 /// Says that there is no verb of this name, and which one was perhaps meant.
 std::string NoSuchVerb(const CLI::App& app, const std::string& name);
 

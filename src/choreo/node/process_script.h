@@ -26,7 +26,6 @@ class ProcessScript final : public runtime::sessions::Program {
   std::optional<std::vector<robot::Value>> Values(const std::vector<ExprId>& exprs, const FlowNode& node);
   std::optional<size_t> Motion(const FlowNode& node);
   std::optional<runtime::sessions::Step> Silent(const FlowNode& node);
-  bool Same(const std::string& label, const std::string& given) const;
   std::string LabelOf(RobotId from, RobotId to, const std::string& given) const;
 
   Graph& graph_;

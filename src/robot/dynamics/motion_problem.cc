@@ -6,8 +6,8 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "expr/substitute.h"
 #include "reach/problem/bounds.h"
+#include "robot/model/control.h"
 
 namespace rondo::robot {
 
@@ -125,12 +125,7 @@ class Builder {
       for (const auto& [variable, value] : motion_.control->laws) laws.emplace(variable, value);
     }
     const auto substituted = [&](TermId t) {
-      for (int depth = 0; depth < 8 && !laws.empty(); ++depth) {
-        const TermId next = expr::Substitute(arena_, t, laws);
-        if (next == t) break;
-        t = next;
-      }
-      return t;
+      return motion_.control ? Determined(arena_, *motion_.control, t) : t;
     };
     for (size_t i = 0; i < body_.states.size(); ++i) {
       const Variable& v = body_.states[i];

@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 #include "expr/numeric.h"
-#include "expr/substitute.h"
+#include "robot/model/control.h"
 
 namespace rondo::sim {
 
@@ -107,15 +106,7 @@ class Builder {
 
   // Inputs that a controller sets at all times are what it says.
   TermId Continuous(TermId term) {
-    if (!body_.control || body_.control->period) return term;
-    const std::unordered_map<TermId, TermId> laws(body_.control->laws.begin(), body_.control->laws.end());
-    constexpr int kDeepest = 8;  // a law that reads what another one sets, and so on
-    for (int depth = 0; depth < kDeepest && !laws.empty(); ++depth) {
-      const TermId next = expr::Substitute(arena_, term, laws);
-      if (next == term) return term;
-      term = next;
-    }
-    return term;
+    return body_.control ? robot::Determined(arena_, *body_.control, term) : term;
   }
 
   void Rates() {

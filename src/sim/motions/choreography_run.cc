@@ -105,7 +105,7 @@ class ChoreographyRun final : public Audience {
 
   // -- what happens
 
-  void Tell(Wrong wrong, const std::string& what) {
+  void Happens(Wrong wrong, const std::string& what) {
     if (recorder_ != nullptr) recorder_->Incident(time_, wrong, what);
     for (Incident& known : report_.incidents) {
       if (known.wrong != wrong || known.what != what) continue;
@@ -120,8 +120,8 @@ class ChoreographyRun final : public Audience {
     scene_.SetClock(0);
     const double miss = motion.code().pre.Miss(scene_.values());
     if (miss > Condition::kTolerance)
-      Tell(Wrong::kPrecondition,
-           fmt::format("the precondition of `{}` does not hold where it begins", motion.code().text));
+      Happens(Wrong::kPrecondition,
+              fmt::format("the precondition of `{}` does not hold where it begins", motion.code().text));
     const choreo::RobotId robot(motion.code().robot);
     places_.Moves(robot);
     motion.LastAtLeast(LeastOf(places_.StepsOf(robot)));
@@ -141,7 +141,7 @@ class ChoreographyRun final : public Audience {
   }
 
   void Ends(const MotionRun& motion) override {
-    if (!motion.broken().empty()) Tell(Wrong::kContract, motion.broken());
+    if (!motion.broken().empty()) Happens(Wrong::kContract, motion.broken());
     if (recorder_ != nullptr) recorder_->Ends(time_, motion.code());
   }
 
@@ -152,9 +152,10 @@ class ChoreographyRun final : public Audience {
     const auto sent = places_.Says(from, choreo::Action::Kind::kSend, robot, message.label);
     const auto taken = places_.Says(robot, choreo::Action::Kind::kReceive, from, message.label);
     if (sent.empty() || taken.empty())
-      Tell(Wrong::kOrder, fmt::format("`{}` from `{}` to `{}` is not what the choreography says comes next",
-                                      message.label, graph_.NameOf(from), graph_.NameOf(robot)));
-    promises_.Look(scene_, sent, values, [this](Wrong wrong, const std::string& what) { Tell(wrong, what); });
+      Happens(Wrong::kOrder,
+              fmt::format("`{}` from `{}` to `{}` is not what the choreography says comes next",
+                          message.label, graph_.NameOf(from), graph_.NameOf(robot)));
+    promises_.Look(scene_, sent, values, tell_);
   }
 
   // Lets everything happen that can happen at this instant. False if that has no end.
@@ -219,15 +220,14 @@ class ChoreographyRun final : public Audience {
       if (motion == nullptr) continue;
       scene_.SetClock(motion->time());
       if (!motion->code().assume.Holds(scene_.values()))
-        Tell(Wrong::kAssumption,
-             fmt::format("what `{}` assumes of others does not hold", motion->code().text));
-      if (!motion->broken().empty()) Tell(Wrong::kContract, motion->broken());
+        Happens(Wrong::kAssumption,
+                fmt::format("what `{}` assumes of others does not hold", motion->code().text));
+      if (!motion->broken().empty()) Happens(Wrong::kContract, motion->broken());
       if (!motion->lost().empty() && report_.lost.empty()) report_.lost = motion->lost();
     }
-    const auto tell = [this](Wrong wrong, const std::string& what) { Tell(wrong, what); };
-    contacts_->Look(scene_, motions, tell);
+    contacts_->Look(scene_, motions, tell_);
     for (const MotionRun* motion : motions) {
-      if (motion != nullptr) promises_.Look(scene_, *motion, places_, tell);
+      if (motion != nullptr) promises_.Look(scene_, *motion, places_, tell_);
     }
   }
 
@@ -254,7 +254,7 @@ class ChoreographyRun final : public Audience {
   // Does what is to be done at this instant, and tells whether the run is over.
   bool Over() {
     if (!Settle() || (SomebodyStands() && !Urge())) {
-      Tell(Wrong::kNoTime, "things happen without end, and no time passes");
+      Happens(Wrong::kNoTime, "things happen without end, and no time passes");
       return End(Curtain::kFailed);
     }
     Look();
@@ -272,13 +272,13 @@ class ChoreographyRun final : public Audience {
     for (size_t r = 0; r < performers_.size(); ++r) {
       const Session& session = performers_[r]->session();
       if (!session.failed()) continue;
-      Tell(Wrong::kChoice, fmt::format("`{}`: {}", graph_.NameOf(choreo::RobotId(r)), session.fault()));
+      Happens(Wrong::kChoice, fmt::format("`{}`: {}", graph_.NameOf(choreo::RobotId(r)), session.fault()));
       return End(Curtain::kFailed);
     }
     if (all([](Performer& p) { return p.session().ended(); })) return End(Curtain::kEnd);
     const bool waits = all([](Performer& p) { return p.session().idle(); });
     if (waits || all([](Performer& p) { return p.session().ended() || !p.session().moving(); })) {
-      Tell(Wrong::kStuck, Waiting());
+      Happens(Wrong::kStuck, Waiting());
       return End(Curtain::kFailed);
     }
     if (options_.stop.StopRequested() || time_ >= options_.interrupt_at) return End(Curtain::kInterrupted);
@@ -292,8 +292,8 @@ class ChoreographyRun final : public Audience {
       } else if (!since) {
         since = time_;
       } else if (time_ > *since + kDrift) {
-        Tell(Wrong::kWaiting,
-             fmt::format("time passes for `{}`, which makes no motion", graph_.NameOf(choreo::RobotId(r))));
+        Happens(Wrong::kWaiting, fmt::format("time passes for `{}`, which makes no motion",
+                                             graph_.NameOf(choreo::RobotId(r))));
       }
     }
     if (options_.progress) options_.progress(time_, options_.duration);
@@ -334,6 +334,7 @@ class ChoreographyRun final : public Audience {
   std::optional<Contacts> contacts_;
   std::vector<std::unique_ptr<Performer>> performers_;
   ChoreographyReport report_;
+  const Tell tell_ = [this](Wrong wrong, const std::string& what) { Happens(wrong, what); };
   std::vector<size_t> order_;                       // of the robots, to move
   std::vector<std::optional<double>> stood_since_;  // by robot, seconds
   Time now_ = 0;                                    // nanoseconds

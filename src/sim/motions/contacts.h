@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -15,13 +14,10 @@ namespace rondo::sim::motions {
 /// Watches whether bodies touch, and the footprints of their motions: of robots, and of robots and obstacles.
 class Contacts {
  public:
-  /// Is told that two begin to touch.
-  using Tell = std::function<void(Wrong, const std::string& what)>;
-
   Contacts(const robot::World& world, expr::Arena& arena, const SceneState& scene,
            ChoreographyReport& report);
 
-  /// Looks at the present state. `motions`: by robot, the one under way; nullptr if it makes none. Changes no more of the
+  /// Looks at the present state, and tells if two begin to touch. `motions`: by robot, the one under way; nullptr if it makes none. Changes no more of the
   /// scene than its clock.
   void Look(SceneState& scene, const std::vector<MotionRun*>& motions, const Tell& tell);
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "expr/numeric.h"
-#include "expr/substitute.h"
+#include "robot/model/control.h"
 
 namespace rondo::sim::motions {
 namespace {
@@ -94,25 +94,12 @@ class Coder {
     return std::nullopt;
   }
 
-  // Inputs that a controller sets at all times are what it says.
-  TermId Determined(const robot::Control& control, TermId term) {
-    if (control.period) return term;
-    const expr::Substitution laws(control.laws.begin(), control.laws.end());
-    constexpr int kDeepest = 8;  // a law that reads what another one sets, and so on
-    for (int depth = 0; depth < kDeepest && !laws.empty(); ++depth) {
-      const TermId next = expr::Substitute(arena_, term, laws);
-      if (next == term) return term;
-      term = next;
-    }
-    return term;
-  }
-
   std::optional<DriveCode> Drive(const robot::Control& control) {
     std::vector<std::pair<TermId, TermId>> rates;
     // What a motion does not modify stays as it is.
     for (size_t i = 0; i < body_.states.size(); ++i) {
       if (i >= instance_.contract.modifies.size() || !instance_.contract.modifies[i]) continue;
-      rates.emplace_back(body_.states[i].term, Determined(control, *body_.derivatives[i]));
+      rates.emplace_back(body_.states[i].term, robot::Determined(arena_, control, *body_.derivatives[i]));
     }
     auto flow = Assigned(rates);
     auto laws = Assigned(control.laws);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <random>
@@ -17,8 +16,6 @@ namespace rondo::sim::motions {
 /// guarantee, and that messages are sent and carry what they may.
 class Promises {
  public:
-  using Tell = std::function<void(Wrong, const std::string& what)>;
-
   /// Everything must outlive it.
   Promises(const choreo::Cast& cast, const SceneState& scene, std::mt19937_64& random);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -35,6 +36,9 @@ struct Incident {
   double first = 0;  ///< seconds
   uint64_t count = 1;
 };
+
+/// Is told of something that is wrong, and what it is.
+using Tell = std::function<void(Wrong, const std::string& what)>;
 
 /// Names why a run ended.
 enum class Curtain : uint8_t {
