@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "deploy/clocked_way.h"
 #include "deploy/echo.h"
+#include "deploy/log_name.h"
 #include "deploy/round_thread.h"
 #include "deploy/status.h"
 #include "platform/orders.h"
@@ -35,20 +36,6 @@ uint64_t Agreement(const RobotOptions& options, const Replica& replica) {
     writer.Block({reinterpret_cast<const uint8_t*>(text->data()), text->size()});
   writer.Block(replica.before());
   return runtime::codec::Sum(bytes);
-}
-
-// A log of an earlier life stays: `bot0.mcap`, `bot0.2.mcap`, ...
-std::string Unused(const std::string& wanted) {
-  std::error_code ignored;
-  const std::filesystem::path path(wanted);
-  std::string name = wanted;
-  for (int life = 2; std::filesystem::is_regular_file(name, ignored) ||
-                     std::filesystem::is_regular_file(name + ".partial", ignored);
-       ++life)
-    name =
-        (path.parent_path() / fmt::format("{}.{}{}", path.stem().string(), life, path.extension().string()))
-            .string();
-  return name;
 }
 
 class RobotProcess {
@@ -151,7 +138,7 @@ class RobotProcess {
     const LogHead head{
         self_, settings_.incarnation, settings_.session, options_.seed, settings_.lease, settings_.stop_time,
         names, options_.program_name, options_.program,  options_.spec, options_.fleet,  options_.files};
-    report_.log = Unused(options_.log);
+    report_.log = UnusedLogName(options_.log);
     auto log = LogWriter::Open(report_.log, head, std::move(replica));
     if (!log.ok()) return log.error();
     log_ = std::move(log).value();

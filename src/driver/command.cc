@@ -90,4 +90,10 @@ bool Command::Given(const char* name) const { return verb_->get_option(name)->co
 
 void RefuseOption(const std::string& name, const std::string& why) { throw CLI::ValidationError(name, why); }
 
+void RefuseAll(const Command& verb, std::initializer_list<const char*> names, const char* why) {
+  for (const char* name : names) {
+    if (verb.Given(name)) RefuseOption(name, why);
+  }
+}
+
 }  // namespace rondo::driver

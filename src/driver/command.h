@@ -69,5 +69,7 @@ class Command {
 
 /// Ends a callback as if the command line had been refused: exit status 2.
 [[noreturn]] void RefuseOption(const std::string& name, const std::string& why);
+/// Does so if the user wrote one of these options.
+void RefuseAll(const Command& verb, std::initializer_list<const char*> names, const char* why);
 
 }  // namespace rondo::driver

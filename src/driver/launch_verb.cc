@@ -7,11 +7,13 @@
 
 #include "base/counted.h"
 #include "base/file.h"
+#include "driver/choreography_robots.h"
 #include "driver/command.h"
 #include "driver/logs_text.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "runs/launch.h"
+#include "workspace/module_files.h"
 
 namespace rondo::driver {
 
@@ -22,7 +24,11 @@ namespace {
 
 struct Options {
   std::vector<std::string> cores;
-  std::string file;
+  std::vector<std::string> files;
+  std::string choreography;
+  std::vector<std::string> admitted;
+  bool projections = false;
+  double tolerance = 0;
   std::string fleet;
   std::string spec;
   std::string logs;
@@ -114,7 +120,7 @@ ExitStatus StatusOf(const runs::LaunchReport& report, const Options& options) {
 }
 
 ExitStatus Fail(const Options& options, const workspace::Session& session, const std::string& why) {
-  return Refuse("launch", options.file, options.json, session.sources, session.diagnostics, why);
+  return Refuse("launch", options.files[0], options.json, session.sources, session.diagnostics, why);
 }
 
 // A description for `ros2 launch`, which is Python.
@@ -166,7 +172,7 @@ def generate_launch_description():
 ExitStatus Run(const Options& options) {
   workspace::Session session;
   const auto program = runs::LoadRobotProgram(
-      runs::FindSimulationFiles(options.file, options.spec, options.fleet), options.seed, session);
+      runs::FindSimulationFiles(options.files[0], options.spec, options.fleet), options.seed, session);
   if (!program) return Fail(options, session, {});
   if (!options.ros2.empty()) return WriteDescription(options, *program);
   runs::LaunchOptions launch;
@@ -248,14 +254,27 @@ ExitStatus Run(const Options& options) {
   return status;
 }
 
+ExitStatus LaunchParts(const Options& options) {
+  LaunchedChoreographyOptions launched;
+  launched.files = {options.files, options.admitted, options.choreography, options.projections};
+  launched.launch.logs = options.logs;
+  launched.launch.trace = options.trace;
+  launched.launch.seed = options.seed.value_or(1);
+  launched.launch.duration = options.duration;
+  launched.launch.tolerance = options.tolerance;
+  launched.json = options.json;
+  return LaunchChoreography(launched);
+}
+
 }  // namespace
 
 void AddLaunchVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
-  Command verb(app, "launch",
-               "run a whole fleet on this machine: a process for each robot, bodies over ROS topics");
-  verb.Option("FILE", options->file,
-              "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet")
+  Command verb(app, "launch", "run all robots on this machine: a process for each, bodies over ROS topics");
+  verb.Option(
+          "FILE", options->files,
+          "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet. Or a choreography (`.rondo`), with "
+          "what belongs to it")
       .Required();
   verb.Option("--fleet", options->fleet, "the fleet, if it is not beside the program");
   verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
@@ -264,7 +283,16 @@ void AddLaunchVerb(CLI::App& app, ExitStatus& status) {
           "a library that `rondo build` made of the program runs the events of the robots, or with `NAME=LIBRARY` of one of them, "
           "instead of the machine")
       .OneEach();
-  verb.Option("--duration", options->duration, "seconds from the first round on; default: as the fleet says")
+  verb.Option("--choreography", options->choreography, "which one of the file, if there are several");
+  verb.Flag("--projections", options->projections,
+            "let each robot follow its projection, even where it has a process");
+  verb.Option("--option", options->admitted, "an option for every choreography: `equal_durations`").OneEach();
+  verb.Option("--tolerance", options->tolerance,
+              "metres or radians by which a motion may miss its contract; default: 0.05")
+      .Between(1e-6, 1e3);
+  verb.Option(
+          "--duration", options->duration,
+          "seconds from the first round on; default: as the fleet says, or until the choreography is over")
       .Between(1e-3, 1e7);
   verb.Option("--speed", options->speed,
               "how many seconds pass in one, if the fleet has `use_sim_time`; default: 1")
@@ -281,11 +309,23 @@ void AddLaunchVerb(CLI::App& app, ExitStatus& status) {
       "examples:\n"
       "  rondo launch examples/koord/lineform --duration 30\n"
       "  ROS_DOMAIN_ID=7 rondo launch examples/koord/delivery --logs logs\n"
+      "  rondo launch examples/choreo/handover.rondo --trace handover.mcap\n"
       "\n"
       "Nothing but DDS is between the processes. While they run, the usual tools see them: `ros2 topic list`, RViz.\n"
-      "Behind the run its logs are judged: each round by the program, each final state by its invariants.\n"
+      "Behind the run its logs are judged: each round by the program, each final state by its invariants; each message by the\n"
+      "choreography.\n"
       "exit status: 0 nothing is wrong, 1 something is, 3 not everything could be judged, or interrupted");
-  verb.Run([options, &status] { status = Run(*options); });
+  verb.Run([options, verb, &status] {
+    const bool choreography = workspace::IsModuleFile(options->files[0]);
+    if (choreography)
+      RefuseAll(verb, {"--fleet", "--spec", "--core", "--speed", "--ros2", "--fail-on-collision"},
+                "only Koord programs have it");
+    else
+      RefuseAll(verb, {"--choreography", "--option", "--projections", "--tolerance"},
+                "only choreographies have it");
+    if (!choreography && options->files.size() > 1) RefuseOption("FILE", "a Koord program is one file");
+    status = choreography ? LaunchParts(*options) : Run(*options);
+  });
 }
 
 }  // namespace rondo::driver

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/counted.h"
+#include "driver/choreography_robots.h"
 #include "driver/command.h"
 #include "driver/logs_text.h"
 #include "driver/terminal.h"
@@ -85,7 +86,12 @@ ExitStatus Judge(const Options& options, const std::vector<deploy::RobotLog>& lo
 ExitStatus Run(const Options& options) {
   workspace::Session session;
   std::vector<deploy::RobotLog> logs;
+  std::vector<deploy::SessionLog> parts;
   for (const std::string& file : options.files) {
+    if (auto part = deploy::ReadSessionLog(file); part.ok()) {
+      parts.push_back(std::move(part).value());
+      continue;
+    }
     auto log = deploy::ReadRobotLog(file);
     if (log.ok()) logs.push_back(std::move(log).value());
     if (!log.ok() && options.files.size() > 1) {
@@ -96,6 +102,12 @@ ExitStatus Run(const Options& options) {
       return Tell(options, {}, session);
     }
   }
+  if (!logs.empty() && !parts.empty()) {
+    session.diagnostics.Report(diag::Kind::kFileUnreadable, {},
+                               "some of these are logs of a Koord program, others of a choreography");
+    return Tell(options, {}, session);
+  }
+  if (!parts.empty()) return JudgeChoreography(parts, options.files[0], options.json);
   if (!logs.empty()) return Judge(options, logs);
   const auto bytes = trace::ReadTrace(options.files[0]);
   if (!bytes.ok()) {

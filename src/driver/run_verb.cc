@@ -5,12 +5,14 @@
 
 #include "base/counted.h"
 #include "deploy/keystore.h"
+#include "driver/choreography_robots.h"
 #include "driver/command.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "koord/native/native_program.h"
 #include "lang/suggest.h"
 #include "runs/robot_files.h"
+#include "workspace/module_files.h"
 
 namespace rondo::driver {
 
@@ -20,8 +22,12 @@ using verdict::ExitStatus;
 namespace {
 
 struct Options {
-  std::string file;
+  std::vector<std::string> files;
   std::string robot;
+  std::string choreography;
+  std::vector<std::string> admitted;
+  bool projections = false;
+  double tolerance = deploy::Precision().tolerance, patience = 1;
   std::string fleet;
   std::string spec;
   std::string log;
@@ -66,13 +72,13 @@ std::string Tell(const deploy::RobotReport& report) {
 }
 
 ExitStatus Fail(const Options& options, const workspace::Session& session, const std::string& why) {
-  return Refuse("run", options.file, options.json, session.sources, session.diagnostics, why);
+  return Refuse("run", options.files[0], options.json, session.sources, session.diagnostics, why);
 }
 
 ExitStatus Run(const Options& options) {
   workspace::Session session;
-  auto program = runs::LoadRobotProgram(runs::FindSimulationFiles(options.file, options.spec, options.fleet),
-                                        options.seed, session);
+  auto program = runs::LoadRobotProgram(
+      runs::FindSimulationFiles(options.files[0], options.spec, options.fleet), options.seed, session);
   if (!program) return Fail(options, session, {});
   const auto& robots = program->fleet.robots;
   const auto robot = std::ranges::find(robots, options.robot, &sim::FleetRobot::name);
@@ -141,17 +147,32 @@ ExitStatus Run(const Options& options) {
   return status;
 }
 
+ExitStatus RunPart(const Options& options) {
+  RunChoreographyOptions run;
+  run.files = {options.files, options.admitted, options.choreography, options.projections};
+  run.robot = options.robot;
+  run.run.seed = options.seed.value_or(1);
+  run.run.session = options.session;
+  run.run.duration = options.duration;
+  run.run.patience = options.patience;
+  run.run.precision.tolerance = options.tolerance;
+  run.run.log = options.log;
+  run.json = options.json;
+  return RunChoreography(run);
+}
+
 }  // namespace
 
 void AddRunVerb(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<Options>();
   Command verb(app, "run",
-               "run one robot of a fleet: a node of ROS 2 that takes part in the rounds of a Koord program");
+               "run one robot: a node of ROS 2 that takes part in a Koord program or a choreography");
   verb.Option(
-          "FILE", options->file,
-          "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet, the same on all robots")
+          "FILE", options->files,
+          "a Koord program, with or without `.koord`; `NAME.toml` beside it is the fleet, the same on all robots. Or a "
+          "choreography (`.rondo`), with what belongs to it")
       .Required();
-  verb.Option("--robot", options->robot, "which robot of the fleet this is").Required();
+  verb.Option("--robot", options->robot, "which robot of the fleet or the choreography this is").Required();
   verb.Option("--fleet", options->fleet, "the fleet, if it is not beside the program");
   verb.Option("--spec", options->spec, "the specification, if it is not beside the program");
   verb.Option("--log", options->log,
@@ -160,22 +181,46 @@ void AddRunVerb(CLI::App& app, ExitStatus& status) {
               "a folder for what has to survive a crash; default: nothing survives");
   verb.Option("--core", options->core,
               "a library that `rondo build` made of the program runs its events, instead of the machine");
+  verb.Option("--choreography", options->choreography, "which one of the file, if there are several");
+  verb.Flag("--projections", options->projections,
+            "let it follow its projection, even where it has a process: on all robots, or on none");
+  verb.Option("--option", options->admitted, "an option for every choreography: `equal_durations`").OneEach();
+  verb.Option(
+          "--tolerance", options->tolerance,
+          "metres or radians by which a motion may miss its contract before it counts as broken; it ends within a tenth "
+          "of it, and fails at five times as much; default: 0.05")
+      .Between(1e-6, 1e3);
+  verb.Option(
+          "--patience", options->patience,
+          "seconds of a choreography without a sign of life of another robot, before this one gives up; default: 1")
+      .Between(0.1, 1e5);
   verb.Option("--session", options->session,
               "a number that all robots have in common; another one for each run of a fleet with `--state`");
   verb.Option("--seed", options->seed, "of everything that is random; default: the fleet's, or 1");
-  verb.Option("--duration", options->duration,
-              "seconds from the first round on; default: until it is stopped")
+  verb.Option(
+          "--duration", options->duration,
+          "seconds from the first round, or the begin of the session, on; default: until it is over, or stopped")
       .Between(1e-3, 1e7);
   verb.Flag("--json", options->json, "the result as JSON on standard output");
   verb.Footer(
       "examples:\n"
       "  rondo run examples/koord/lineform --robot drone0 --log drone0.mcap\n"
       "  ROS_DOMAIN_ID=7 rondo run fleet.koord --robot car1\n"
+      "  rondo run examples/choreo/handover.rondo --robot cart --log cart.mcap\n"
       "\n"
       "The robot waits for its sensors and for all others. Ctrl-C stops it where it is; how robots are found, and which topics\n"
       "they use, is in docs/robots.md.\n"
       "exit status: 0 its time is over, every robot stopped, or it was interrupted; 1 it lost the others, or something is wrong");
-  verb.Run([options, &status] { status = Run(*options); });
+  verb.Run([options, verb, &status] {
+    const bool choreography = workspace::IsModuleFile(options->files[0]);
+    if (choreography)
+      RefuseAll(verb, {"--fleet", "--spec", "--state", "--core"}, "only Koord programs have it");
+    else
+      RefuseAll(verb, {"--choreography", "--option", "--projections", "--tolerance", "--patience"},
+                "only choreographies have it");
+    if (!choreography && options->files.size() > 1) RefuseOption("FILE", "a Koord program is one file");
+    status = choreography ? RunPart(*options) : Run(*options);
+  });
 }
 
 }  // namespace rondo::driver

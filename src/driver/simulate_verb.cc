@@ -257,16 +257,6 @@ ExitStatus Run(const Options& options) {
   return status;
 }
 
-// What only the other language has.
-void RefuseMixture(const Command& verb, bool choreography) {
-  constexpr std::array<const char*, 4> kKoord{"--fleet", "--spec", "--network", "--fail-on-collision"};
-  constexpr std::array<const char*, 4> kMotion{"--choreography", "--option", "--projections", "--runs"};
-  for (const char* name : choreography ? kKoord : kMotion) {
-    if (verb.Given(name))
-      RefuseOption(name, choreography ? "only Koord programs have it" : "only choreographies have it");
-  }
-}
-
 ExitStatus RunChoreography(const Options& options) {
   SimulateChoreographyOptions run;
   run.files = {options.files, options.admitted, options.choreography, options.projections};
@@ -324,7 +314,12 @@ void AddSimulateVerb(CLI::App& app, ExitStatus& status) {
       "exit status: 0 nothing was violated, 1 something was, 3 not everything could be checked, or interrupted");
   verb.Run([options, verb, &status] {
     const bool choreography = workspace::IsModuleFile(options->files[0]);
-    RefuseMixture(verb, choreography);
+    if (choreography)
+      RefuseAll(verb, {"--fleet", "--spec", "--network", "--fail-on-collision"},
+                "only Koord programs have it");
+    else
+      RefuseAll(verb, {"--choreography", "--option", "--projections", "--runs"},
+                "only choreographies have it");
     if (!choreography && options->files.size() > 1) RefuseOption("FILE", "a Koord program is one file");
     status = choreography ? RunChoreography(*options) : Run(*options);
   });

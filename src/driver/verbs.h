@@ -28,6 +28,7 @@ void AddDoctorVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddKeysVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddReplayVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddPlotVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddViewVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddReachVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddSolveVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddCertifyVerb(CLI::App& app, verdict::ExitStatus& status);

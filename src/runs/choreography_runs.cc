@@ -113,6 +113,9 @@ std::optional<StagedChoreography> StageRecorded(const json& record, workspace::S
 
 Replayed ReplayChoreography(const std::string& bytes, const json& record, workspace::Session& session,
                             const ReplayOptions& replay) {
+  if (record.contains("live"))
+    return {false,
+            "robots made this run, not the simulator: their logs can be judged (`rondo replay LOG...`)"};
   const auto staged = StageRecorded(record, session);
   if (!staged) return {false, "the choreography that the trace keeps cannot be used"};
   if (!record.contains("seed") || !record["seed"].is_number_unsigned() || !record.contains("duration") ||

@@ -9,6 +9,7 @@
 #include "deploy/judge_logs.h"
 #include "deploy/stage.h"
 #include "deploy/status.h"
+#include "runs/children.h"
 #include "runs/robot_files.h"
 
 /// Runs a whole fleet on this machine: a process for each robot, and bodies that they reach over ROS 2 alone.
@@ -26,15 +27,6 @@ struct LaunchOptions {
   base::StopToken stop;
   /// Receives, now and then, what the robots say of themselves, and how many seconds the run is old.
   std::function<void(const std::vector<deploy::RobotStatus>& robots, double time)> progress;
-};
-
-/// Tells how the process of a robot ended.
-struct RobotEnd {
-  std::string robot;
-  int status = 0;  ///< exit status; -1: a signal ended it, or it had to be ended
-  int signal = 0;
-  std::string output;  ///< the file with what it said
-  std::string log;     ///< the file of its log; empty: there is none
 };
 
 /// Tells what became of the fleet.

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "runtime/rounds/adder_test.h"
+#include "runtime/sessions/talker_test.h"
+#include "transport/sessions.h"
 #include "transport/transport.h"
 
 namespace rondo::transport {
@@ -48,6 +50,37 @@ inline void ExpectThreadsAgree(const std::vector<std::unique_ptr<Transport>>& wa
   EXPECT_GE(acted.size(), kRounds);
   const uint64_t each = robots * (robots + 1) / 2;
   for (const auto& [round, sums] : acted) EXPECT_EQ(sums, std::set<uint64_t>{each * round}) << round;
+}
+
+/// Threads, a real clock: each message is taken once, in order, and all know when it is over.
+inline void ExpectSessionsEnd(const std::vector<std::unique_ptr<Transport>>& ways) {
+  namespace sessions = runtime::sessions;
+  constexpr int kMessages = 20;
+  const auto robots = static_cast<uint32_t>(ways.size());
+  std::vector<sessions::Talker> talkers(robots);
+  std::vector<sessions::Outcome> outcomes(robots);
+  std::vector<std::thread> threads;
+  for (uint32_t r = 0; r < robots; ++r) {
+    talkers[r].robots = robots;
+    talkers[r].self = r;
+    for (int i = 0; r + 1 < robots && i < kMessages; ++i) talkers[r].to_send.push_back({r + 1, 100.0 * i});
+    threads.emplace_back([&, r] {
+      sessions::MemberSettings settings;
+      settings.self = r;
+      settings.robots = robots;
+      settings.patience = 10'000'000'000;
+      sessions::Member member(settings, talkers[r], talkers[r]);
+      Drive(member, *ways[r], base::StopToken(), [](sessions::Time) {});
+      outcomes[r] = member.outcome();
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(outcomes, std::vector(robots, sessions::Outcome::kOver));
+  for (uint32_t r = 0; r + 1 < robots; ++r) {
+    const auto& taken = talkers[r + 1].taken[r];
+    ASSERT_EQ(taken.size(), size_t{kMessages});
+    for (int i = 0; i < kMessages; ++i) EXPECT_EQ(taken[static_cast<size_t>(i)], 100.0 * i);
+  }
 }
 
 }  // namespace rondo::transport

@@ -117,8 +117,15 @@ class Session {
   /// Reports whether the robot can do nothing by itself: it waits for messages that nobody has offered, in motions that
   /// anybody may end.
   bool idle() const;
+  /// Count the messages that this robot sent to another one, taken or not, and those that it took from it.
+  uint64_t SentTo(uint32_t robot) const { return CountOf(sent_, robot); }
+  uint64_t TakenFrom(uint32_t robot) const { return CountOf(received_, robot); }
 
  private:
+  static uint64_t CountOf(const std::map<uint32_t, uint64_t>& counts, uint32_t robot) {
+    const auto it = counts.find(robot);
+    return it == counts.end() ? 0 : it->second;
+  }
   enum class Went : uint8_t { kOn, kNowhere };
   Went Move();
   Went Send();

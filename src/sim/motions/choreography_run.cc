@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <memory>
 
-#include "choreo/prove/sampler.h"
+#include "sim/motions/beginning.h"
 #include "sim/motions/contacts.h"
 #include "sim/motions/disturbances.h"
 #include "sim/motions/performer.h"
@@ -21,9 +22,10 @@ using runtime::sessions::Session;
 using runtime::sessions::Step;
 using runtime::sessions::Time;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kLook = 0.01;       // seconds from one look at the world to the next
-constexpr int kMostAtOnce = 10'000;  // things that happen at one instant
+constexpr double kLook = 0.01;  // seconds from one look at the world to the next
+constexpr uint64_t kSession = 1;
+constexpr Time kResend = 20'000'000;  // nanoseconds; nothing gets lost
+constexpr int kMostAtOnce = 10'000;   // things that happen at one instant
 
 class ChoreographyRun final : public Audience {
  public:
@@ -41,18 +43,21 @@ class ChoreographyRun final : public Audience {
         promises_(cast, scene_, random_) {}
 
   ChoreographyReport Go() {
-    if (!Place()) {
+    if (!Place(graph_, arena_, scene_, random_)) {
       report_.ended = Curtain::kLost;
       report_.lost = "no state was found in which the choreography may begin";
       if (recorder_ != nullptr) recorder_->Finish(0, scene_, report_);
       return report_;
     }
-    FindOrder();
+    order_ = CarriersFirst(world_);
+    stood_since_.resize(order_.size());
     disturbances_.emplace(world_, arena_, scene_, random_);
     contacts_.emplace(world_, arena_, scene_, report_);
     for (size_t r = 0; r < graph_.robots.size(); ++r) {
-      performers_.push_back(
-          std::make_unique<Performer>(cast_, choreo::RobotId(r), scene_, library_, random_, *this));
+      performers_.push_back(std::make_unique<Performer>(cast_, choreo::RobotId(r), scene_, library_, random_,
+                                                        Manner::kAny, *this));
+      sessions_.emplace_back(kSession, static_cast<uint32_t>(r), kResend, *performers_.back(),
+                             *performers_.back());
     }
     if (recorder_ != nullptr) recorder_->Scene(0, scene_);
     while (!Over()) Advance();
@@ -63,45 +68,6 @@ class ChoreographyRun final : public Audience {
 
  private:
   // -- the beginning
-
-  // A state that `initially` allows; what it does not mention is anywhere in its range.
-  bool Place() {
-    std::vector<expr::TermId> allowed{graph_.initially};
-    std::vector<std::pair<expr::TermId, std::pair<double, double>>> ranges;
-    expr::Numeric numeric(arena_, {});
-    for (const robot::Body& body : world_.bodies) {
-      for (const auto* list : {&body.states, &body.unknowns}) {
-        for (const robot::Variable& v : *list) {
-          if (v.least) allowed.push_back(arena_.Le(*v.least, v.term));
-          if (v.most) allowed.push_back(arena_.Le(v.term, *v.most));
-          if (!v.least || !v.most) continue;
-          ranges.emplace_back(v.term, std::pair(numeric(*v.least), numeric(*v.most)));
-        }
-      }
-    }
-    constexpr int kTries = 1000;
-    for (const auto& [term, range] : ranges) scene_[term] = Between(random_, range.first, range.second);
-    const auto point = choreo::Sampler(arena_, arena_.And(allowed)).Draw(random_, kTries);
-    if (!point) return false;
-    for (size_t i = 0; i < scene_.variables().size(); ++i) {
-      const auto it = point->find(scene_.variables()[i]);
-      if (it != point->end()) scene_.values()[i] = it->second;
-    }
-    return true;
-  }
-
-  // Who carries others moves before them.
-  void FindOrder() {
-    std::vector<std::pair<size_t, size_t>> depths;
-    for (size_t r = 0; r < world_.bodies.size(); ++r) {
-      size_t depth = 0;
-      for (auto parent = world_.bodies[r].parent; parent; parent = world_.bodies[*parent].parent) ++depth;
-      depths.emplace_back(depth, r);
-    }
-    std::ranges::sort(depths);
-    for (const auto& [depth, r] : depths) order_.push_back(r);
-    stood_since_.resize(order_.size());
-  }
 
   // -- what happens
 
@@ -124,25 +90,13 @@ class ChoreographyRun final : public Audience {
               fmt::format("the precondition of `{}` does not hold where it begins", motion.code().text));
     const choreo::RobotId robot(motion.code().robot);
     places_.Moves(robot);
-    motion.LastAtLeast(LeastOf(places_.StepsOf(robot)));
-    if (recorder_ != nullptr) recorder_->Begins(time_, motion.code());
-  }
-
-  // A joint motion lasts as long as the motion of it that takes longest, at least.
-  double LeastOf(const std::vector<choreo::NodeId>& steps) const {
-    double least = steps.empty() ? 0 : kInfinity;
-    for (const choreo::NodeId step : steps) {
-      double longest = 0;
-      for (const choreo::Part& part : graph_[step].parts)
-        longest = std::max(longest, part.duration.least.ToDouble());
-      least = std::min(least, longest);
-    }
-    return least;
+    motion.LastAtLeast(places_.LeastOf(robot));
+    if (recorder_ != nullptr) recorder_->Begins(time_, robot.index(), motion.code().call);
   }
 
   void Ends(const MotionRun& motion) override {
     if (!motion.broken().empty()) Happens(Wrong::kContract, motion.broken());
-    if (recorder_ != nullptr) recorder_->Ends(time_, motion.code());
+    if (recorder_ != nullptr) recorder_->Ends(time_, motion.code().robot, motion.code().call);
   }
 
   void Takes(choreo::RobotId robot, const Expected& message, const std::vector<double>& values) override {
@@ -162,11 +116,11 @@ class ChoreographyRun final : public Audience {
   bool Settle() {
     for (int i = 0; i < kMostAtOnce; ++i) {
       bool went = false;
-      for (const auto& performer : performers_) went = performer->session().Advance(now_) || went;
-      for (const auto& performer : performers_) {
-        for (const Frame& frame : performer->session().TakeFrames()) {
+      for (Session& session : sessions_) went = session.Advance(now_) || went;
+      for (Session& session : sessions_) {
+        for (const Frame& frame : session.TakeFrames()) {
           went = true;
-          performers_[frame.to]->session().Hear(frame);
+          sessions_[frame.to].Hear(frame);
         }
       }
       if (!went) return true;
@@ -231,12 +185,8 @@ class ChoreographyRun final : public Audience {
     }
   }
 
-  static bool Stands(const Performer& performer) {
-    return !performer.session().ended() && !performer.session().moving();
-  }
-  bool SomebodyStands() const {
-    return std::ranges::any_of(performers_, [](const auto& p) { return Stands(*p); });
-  }
+  static bool Stands(const Session& session) { return !session.ended() && !session.moving(); }
+  bool SomebodyStands() const { return std::ranges::any_of(sessions_, Stands); }
 
   // A joint motion is over when one of its motions is: then the others do not last either. False if what follows has no end.
   bool Urge() {
@@ -266,18 +216,16 @@ class ChoreographyRun final : public Audience {
         return End(Curtain::kLost);
       }
     }
-    const auto all = [&](auto holds) {
-      return std::ranges::all_of(performers_, [&](const auto& p) { return holds(*p); });
-    };
-    for (size_t r = 0; r < performers_.size(); ++r) {
-      const Session& session = performers_[r]->session();
+    const auto all = [&](auto holds) { return std::ranges::all_of(sessions_, holds); };
+    for (size_t r = 0; r < sessions_.size(); ++r) {
+      const Session& session = sessions_[r];
       if (!session.failed()) continue;
       Happens(Wrong::kChoice, fmt::format("`{}`: {}", graph_.NameOf(choreo::RobotId(r)), session.fault()));
       return End(Curtain::kFailed);
     }
-    if (all([](Performer& p) { return p.session().ended(); })) return End(Curtain::kEnd);
-    const bool waits = all([](Performer& p) { return p.session().idle(); });
-    if (waits || all([](Performer& p) { return p.session().ended() || !p.session().moving(); })) {
+    if (all([](const Session& s) { return s.ended(); })) return End(Curtain::kEnd);
+    const bool waits = all([](const Session& s) { return s.idle(); });
+    if (waits || all([](const Session& s) { return s.ended() || !s.moving(); })) {
       Happens(Wrong::kStuck, Waiting());
       return End(Curtain::kFailed);
     }
@@ -287,7 +235,7 @@ class ChoreographyRun final : public Audience {
       // Moments are rounded to nanoseconds, each of them: threads drift apart a little.
       constexpr double kDrift = 1e-6;
       std::optional<double>& since = stood_since_[r];
-      if (!Stands(*performers_[r])) {
+      if (!Stands(sessions_[r])) {
         since.reset();
       } else if (!since) {
         since = time_;
@@ -304,7 +252,7 @@ class ChoreographyRun final : public Audience {
   std::string Waiting() const {
     std::string text;
     for (size_t r = 0; r < performers_.size(); ++r) {
-      const Session& session = performers_[r]->session();
+      const Session& session = sessions_[r];
       if (session.ended() || !session.step()) continue;
       const Step& step = *session.step();
       std::string what;
@@ -332,7 +280,8 @@ class ChoreographyRun final : public Audience {
   Promises promises_;
   std::optional<Disturbances> disturbances_;
   std::optional<Contacts> contacts_;
-  std::vector<std::unique_ptr<Performer>> performers_;
+  std::vector<std::unique_ptr<Performer>> performers_;  // by robot
+  std::deque<Session> sessions_;                        // by robot
   ChoreographyReport report_;
   const Tell tell_ = [this](Wrong wrong, const std::string& what) { Happens(wrong, what); };
   std::vector<size_t> order_;                       // of the robots, to move

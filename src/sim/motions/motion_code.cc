@@ -48,6 +48,7 @@ class Coder {
                     std::move(free),
                     std::move(low),
                     std::move(high),
+                    Reads({c.pre, during, c.post}),
                     std::move(*pre),
                     std::move(*assume),
                     std::move(*all_along),
@@ -74,6 +75,12 @@ class Coder {
     if (condition.ok()) return std::move(condition).value();
     Problem("the contract", condition.error());
     return std::nullopt;
+  }
+
+  std::vector<size_t> Reads(const std::vector<TermId>& terms) const {
+    std::vector<size_t> places;
+    for (const TermId t : robot::VariablesOf(arena_, terms)) places.push_back(scene_.Of(t));
+    return places;
   }
 
   bool HasDynamics() const {

@@ -39,6 +39,7 @@ struct MotionCode {
   bool interruptible = true;
   std::vector<size_t> free;       ///< the states that it may change
   std::vector<double> low, high;  ///< of these: their ranges; infinite where there is none
+  std::vector<size_t> reads;      ///< what `pre`, `during` and `end` depend on
   Condition pre, assume;
   Condition during;  ///< with the ranges of the states
   Condition end;     ///< `during` and `post` together

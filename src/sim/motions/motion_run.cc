@@ -29,8 +29,8 @@ double Somewhere(std::mt19937_64& random, double low, double high) {
 
 }  // namespace
 
-MotionRun::MotionRun(MotionCode& code, SceneState& scene, std::mt19937_64& random)
-    : code_(code), scene_(scene), random_(random) {
+MotionRun::MotionRun(MotionCode& code, SceneState& scene, std::mt19937_64& random, Manner manner)
+    : code_(code), scene_(scene), random_(random), manner_(manner) {
   start_ = Free();
   goal_ = start_;
   ChooseTimes();
@@ -43,6 +43,7 @@ MotionRun::MotionRun(MotionCode& code, SceneState& scene, std::mt19937_64& rando
   if (code_.free.empty()) return;
   if (!code_.interruptible) {
     ChooseGoal();
+    if (manner_ == Manner::kPlain) ChoosePace();
     resolution_ = std::clamp(over_ / kStates, 1e-4, kSmooth);
   }
   ChooseWay();
@@ -65,7 +66,7 @@ double MotionRun::Longest() const {
 
 void MotionRun::ChooseTimes() {
   if (!code_.interruptible) {
-    over_ = Somewhere(random_, code_.least, Longest());
+    over_ = manner_ == Manner::kPlain ? Longest() : Somewhere(random_, code_.least, Longest());
     // What takes no time has to be over where it begins.
     constexpr double kLeast = 0.01;
     scene_.SetClock(over_);
@@ -74,7 +75,10 @@ void MotionRun::ChooseTimes() {
     return;
   }
   over_ = code_.most;
-  ready_ = std::min(over_, code_.least - std::log1p(-Between(random_, 0, 1)));  // a second more, on average
+  ready_ =
+      manner_ == Manner::kPlain
+          ? code_.least
+          : std::min(over_, code_.least - std::log1p(-Between(random_, 0, 1)));  // a second more, on average
 }
 
 // A state in which the motion may end.
@@ -85,7 +89,7 @@ void MotionRun::ChooseGoal() {
     // Some contracts can be kept only if the motion takes a certain time: its least or its longest, most likely.
     if (i > 0) over_ = i == 1 ? Longest() : i == 2 ? code_.least : Somewhere(random_, code_.least, Longest());
     std::vector<double> guess = start_;
-    if (i > 0 || random_() % 2 == 0) {
+    if (i > 0 || (manner_ == Manner::kAny && random_() % 2 == 0)) {
       for (size_t k = 0; k < guess.size(); ++k) {
         const bool bounded = std::isfinite(code_.low[k]) && std::isfinite(code_.high[k]);
         guess[k] = bounded && random_() % 2 == 0 ? Between(random_, code_.low[k], code_.high[k])
@@ -102,8 +106,32 @@ void MotionRun::ChooseGoal() {
   lost_ = fmt::format("no state was found in which `{}` may end", code_.text);
 }
 
+// As long as it takes at an easy speed.
+void MotionRun::ChoosePace() {
+  constexpr double kEasy = 0.4;  // metres or radians per second, in the middle of the way
+  constexpr double kPeak = 2;    // times the speed on average
+  double farthest = 0;
+  for (size_t k = 0; k < start_.size(); ++k) farthest = std::max(farthest, std::abs(goal_[k] - start_[k]));
+  const double longest = over_;
+  over_ = std::clamp(kPeak * farthest / kEasy, code_.least, longest);
+  // Where it ends may depend on how long it takes.
+  SetFree(goal_);
+  scene_.SetClock(over_);
+  if (code_.end.Approach(scene_.values(), code_.free))
+    goal_ = Free();
+  else
+    over_ = longest;
+  SetFree(start_);
+}
+
 // A third of the motions go straight, as far as their contract lets them; others swing, a little or through their ranges.
 void MotionRun::ChooseWay() {
+  if (manner_ == Manner::kPlain) {
+    pace_ = -1;  // at rest in the beginning and in the end
+    swing_.resize(start_.size());
+    turns_.resize(start_.size());
+    return;
+  }
   pace_ = Between(random_, -0.8, 0.8);
   const uint64_t how = random_() % 3;
   const double span = std::isfinite(over_) && !code_.interruptible ? over_ : Between(random_, 2, 8);

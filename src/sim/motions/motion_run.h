@@ -11,13 +11,19 @@
 
 namespace rondo::sim::motions {
 
+/// Says how motions are chosen among those that a contract allows.
+enum class Manner : uint8_t {
+  kAny,    ///< at random: to find what goes wrong
+  kPlain,  ///< straight, from rest to rest, no faster than it has to be: as robots are told to move
+};
+
 /// Moves a robot as the contract of a motion allows: by the dynamics and the controller of its model, if it has them;
 /// else along some curve that keeps the contract, chosen at random among what it allows: where it ends, how long it takes, by
 /// which way. Nothing here is rigorous: what a contract allows and no run shows is not excluded.
 class MotionRun {
  public:
   /// Begins a motion in the present state of the scene. Everything must outlive it.
-  MotionRun(MotionCode& code, SceneState& scene, std::mt19937_64& random);
+  MotionRun(MotionCode& code, SceneState& scene, std::mt19937_64& random, Manner manner);
 
   /// Lets time pass until this many seconds after it began, and moves the robot; others stand where they are in the scene.
   void To(double seconds);
@@ -44,6 +50,7 @@ class MotionRun {
   void ChooseTimes();
   void ChooseGoal();
   void ChooseWay();
+  void ChoosePace();
   std::vector<double> GuessAt(double time) const;
   double Step(Condition& wanted, const std::vector<double>& guess, const std::vector<double>& before);
   bool Follow(double dt, int halvings);
@@ -57,6 +64,7 @@ class MotionRun {
   MotionCode& code_;
   SceneState& scene_;
   std::mt19937_64& random_;
+  Manner manner_;
   double time_ = 0;
   double over_ = 0;   // when it is over, if nobody ends it before; infinite for ever
   double ready_ = 0;  // when the robot is content to go on

@@ -4,18 +4,11 @@
 
 #include <algorithm>
 
-#include "choreo/prove/sampler.h"
-#include "expr/substitute.h"
+#include "sim/motions/payload.h"
 
 namespace rondo::sim::motions {
 
 using runtime::sessions::Progress;
-
-namespace {
-
-constexpr runtime::sessions::Time kResend = 20'000'000;  // nanoseconds
-
-}  // namespace
 
 base::Result<MotionCode*> MotionLibrary::Find(size_t instance) {
   auto& known = known_[instance];
@@ -28,28 +21,26 @@ base::Result<MotionCode*> MotionLibrary::Find(size_t instance) {
 }
 
 Performer::Performer(const choreo::Cast& cast, choreo::RobotId robot, SceneState& scene,
-                     MotionLibrary& library, std::mt19937_64& random, Audience& audience)
+                     MotionLibrary& library, std::mt19937_64& random, Manner manner, Audience& audience)
     : cast_(cast),
       scene_(scene),
       library_(library),
       random_(random),
+      manner_(manner),
       audience_(audience),
       robot_(robot),
-      script_(choreo::ScriptOf(cast, robot, *this)) {
-  runtime::sessions::Program& program = *this;
-  runtime::sessions::Motions& motions = *this;
-  session_.emplace(uint64_t{1}, robot.value, kResend, program, motions);
-}
+      script_(choreo::ScriptOf(cast, robot, *this)) {}
 
 // What the script says, with everybody told of it.
-runtime::sessions::Step Performer::Next() {
-  runtime::sessions::Step step = script_->Next();
-  cases_ = step.cases;
-  return step;
+runtime::sessions::Step Performer::Next() { return step_ = script_->Next(); }
+
+void Performer::Sent() {
+  audience_.Sends(robot_, step_);
+  script_->Sent();
 }
 
 void Performer::Took(size_t which, const std::vector<double>& values) {
-  audience_.Takes(robot_, cases_[which], values);
+  audience_.Takes(robot_, step_.cases[which], values);
   script_->Took(which, values);
 }
 
@@ -59,13 +50,13 @@ void Performer::Begin(size_t motion) {
     problem_ = code.error().message;
     return;
   }
-  motion_.emplace(*code.value(), scene_, random_);
+  motion_.emplace(*code.value(), scene_, random_, manner_);
   audience_.Begins(*motion_);
 }
 
 Progress Performer::Tick() {
   if (!motion_) return problem_.empty() ? Progress::kStopped : Progress::kFailed;
-  const Progress progress = motion_->progress();
+  const Progress progress = audience_.Look(*motion_, motion_->progress());
   if (progress == Progress::kStopped) Halt();
   return progress;
 }
@@ -78,36 +69,10 @@ void Performer::Halt() {
 
 const expr::Numeric::Point& Performer::Now() { return now_ = scene_.Point(); }
 
-// Bools first; then numbers that satisfy what is left, as the state is.
 std::optional<std::vector<double>> Performer::Choose(const choreo::Node& message) {
-  expr::Arena& arena = cast_.declarations->evaluator().arena();
-  const expr::Numeric::Point now = scene_.Point();
-  expr::Substitution known;
-  for (const auto& [variable, value] : now)
-    known.emplace(variable, arena.Number(arena.Real(), expr::Rational::FromDouble(value)));
-  const expr::TermId refinement = expr::Substitute(arena, message.refinement, known);
-  constexpr int kTries = 20, kDraws = 200;
-  for (int i = 0; i < kTries; ++i) {
-    expr::Substitution formulas;
-    for (const robot::Value& value : message.payload) {
-      for (const expr::TermId t : value.terms) {
-        if (arena.op(t) == expr::Op::kVariable && arena.sort_of(t) == arena.Bool())
-          formulas.emplace(t, arena.Constant(random_() % 2 == 0));
-      }
-    }
-    const expr::TermId wanted = expr::Substitute(arena, refinement, formulas);
-    const auto drawn = choreo::Sampler(arena, wanted).Draw(random_, kDraws);
-    if (!drawn) continue;
-    expr::Numeric::Point point = now;
-    for (const auto& [variable, value] : *drawn) point.insert_or_assign(variable, value);
-    std::vector<robot::Value> payload = message.payload;
-    for (robot::Value& value : payload) {
-      for (expr::TermId& t : value.terms) t = expr::Substitute(arena, t, formulas);
-    }
-    if (auto values = choreo::ValuesOf(arena, payload, point)) return values;
-  }
-  problem_ = fmt::format("no value was found that `{}` may carry", message.label);
-  return std::nullopt;
+  auto values = DrawPayload(cast_.declarations->evaluator().arena(), message, scene_.Point(), random_);
+  if (!values) problem_ = fmt::format("no value was found that `{}` may carry", message.label);
+  return values;
 }
 
 }  // namespace rondo::sim::motions

@@ -1,6 +1,7 @@
 #include "sim/motions/places.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace rondo::sim::motions {
 
@@ -43,6 +44,17 @@ const std::vector<std::pair<NodeId, size_t>>& Places::ThreadsAround(NodeId node)
   static const std::vector<std::pair<NodeId, size_t>> kNone;
   const auto it = threads_.find(node);
   return it == threads_.end() ? kNone : it->second;
+}
+
+double Places::LeastOf(RobotId robot) const {
+  std::optional<double> least;
+  for (const NodeId step : steps_[robot.index()]) {
+    double longest = 0;
+    for (const choreo::Part& part : (*cast_.graph)[step].parts)
+      longest = std::max(longest, part.duration.least.ToDouble());
+    least = std::min(least.value_or(longest), longest);
+  }
+  return least.value_or(0);
 }
 
 // Choices are made silently: each way is one.

@@ -23,6 +23,8 @@ class Places {
                                    const std::string& label);
   /// Returns the steps of the choreography that the present motion of a robot may belong to; none if that is not known.
   const std::vector<choreo::NodeId>& StepsOf(choreo::RobotId robot) const { return steps_[robot.index()]; }
+  /// Returns how long, in seconds, its present step lasts at least: as long as the motion of it that takes longest.
+  double LeastOf(choreo::RobotId robot) const;
   /// Returns the threads around a node, the outermost first: the fork and which of its branches.
   const std::vector<std::pair<choreo::NodeId, size_t>>& ThreadsAround(choreo::NodeId node) const;
 

@@ -157,15 +157,12 @@ void StageRecorder::Message(double time, uint32_t from, uint32_t to, const std::
                {"values", values}});
 }
 
-void StageRecorder::Begins(double time, const MotionCode& motion) {
-  Event(
-      time,
-      {{"kind", "begins"}, {"robot", graph_.NameOf(choreo::RobotId(motion.robot))}, {"motion", motion.call}});
+void StageRecorder::Begins(double time, size_t robot, const std::string& motion) {
+  Event(time, {{"kind", "begins"}, {"robot", graph_.NameOf(choreo::RobotId(robot))}, {"motion", motion}});
 }
 
-void StageRecorder::Ends(double time, const MotionCode& motion) {
-  Event(time,
-        {{"kind", "ends"}, {"robot", graph_.NameOf(choreo::RobotId(motion.robot))}, {"motion", motion.call}});
+void StageRecorder::Ends(double time, size_t robot, const std::string& motion) {
+  Event(time, {{"kind", "ends"}, {"robot", graph_.NameOf(choreo::RobotId(robot))}, {"motion", motion}});
 }
 
 void StageRecorder::Incident(double time, Wrong wrong, const std::string& what) {

@@ -8,8 +8,9 @@
 
 #include "choreo/graph/graph.h"
 #include "robot/contact/solid.h"
-#include "sim/motions/motion_code.h"
+#include "sim/motions/condition.h"
 #include "sim/motions/report.h"
+#include "sim/motions/scene_state.h"
 #include "trace/writer.h"
 
 namespace rondo::sim::motions {
@@ -28,8 +29,8 @@ class StageRecorder {
   /// Say what happens, at this moment in seconds since the run began.
   void Message(double time, uint32_t from, uint32_t to, const std::string& label,
                const std::vector<double>& values);
-  void Begins(double time, const MotionCode& motion);
-  void Ends(double time, const MotionCode& motion);
+  void Begins(double time, size_t robot, const std::string& motion);
+  void Ends(double time, size_t robot, const std::string& motion);
   void Incident(double time, Wrong wrong, const std::string& what);
   /// Shows where everything is, if that was not shown within the last twentieth of a second.
   void Scene(double time, const SceneState& scene);

@@ -58,6 +58,11 @@ TEST(Drive, AFleetOfThreadsAgreesOverDds) {
   ExpectThreadsAgree(ways);
 }
 
+TEST(Drive, SessionsOfThreadsEndOverDds) {
+  TestFleet fleet;
+  ExpectSessionsEnd(fleet.Connect(3));
+}
+
 }  // namespace
 }  // namespace rondo::transport::dds
 

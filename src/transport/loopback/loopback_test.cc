@@ -30,6 +30,11 @@ TEST(Loopback, TheOldestGiveWay) {
   EXPECT_FALSE(b->Receive(b->Now(), datagram));
 }
 
+TEST(Drive, SessionsOfThreadsEnd) {
+  Loopback fleet;
+  ExpectSessionsEnd(fleet.Connect(4));
+}
+
 TEST(Drive, AFleetOfThreadsAgrees) {
   Loopback fleet;
   ExpectThreadsAgree(fleet.Connect(4));
