@@ -7,6 +7,7 @@
 #include "base/counted.h"
 #include "base/file.h"
 #include "driver/command.h"
+#include "driver/page.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "runs/exploration.h"
@@ -39,6 +40,7 @@ struct Options {
   uint64_t seed = 1;
   std::string save;
   std::string trace;
+  bool open = false;
   bool json = false;
 };
 
@@ -261,6 +263,7 @@ void AddExploreVerb(CLI::App& app, ExitStatus& status) {
   verb.Option("--seed", options->seed, "of the random walks; default: 1");
   verb.Option("--save", options->save, "where to write the run that breaks a property");
   verb.Option("--trace", options->trace, "write that run as a trace (MCAP), too");
+  verb.Flag("--open", options->open, "show the run that breaks a property in a browser (`rondo view`)");
   verb.Flag("--json", options->json, "the result as JSON on standard output");
   verb.Footer(
       "examples:\n"
@@ -270,7 +273,11 @@ void AddExploreVerb(CLI::App& app, ExitStatus& status) {
       "\n"
       "The `explore` section of the specification gives parameters, sensors and external functions values (docs/language.md).\n"
       "exit status: 0 no property is broken, 1 one is, 3 not everything was explored or checked");
-  verb.Run([options, &status] { status = Run(*options); });
+  verb.Run([options, &status] {
+    if (options->open && options->trace.empty()) options->trace = PlaceForTrace();
+    status = Run(*options);
+    if (options->open) ShowTrace(options->trace, options->json);
+  });
 }
 
 }  // namespace rondo::driver

@@ -10,6 +10,7 @@
 #include "driver/choreography_robots.h"
 #include "driver/command.h"
 #include "driver/logs_text.h"
+#include "driver/page.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
 #include "runs/launch.h"
@@ -38,6 +39,7 @@ struct Options {
   double duration = 0;
   double speed = 1;
   bool fail_on_collision = false;
+  bool open = false;
   bool json = false;
 };
 
@@ -301,6 +303,7 @@ void AddLaunchVerb(CLI::App& app, ExitStatus& status) {
   verb.Option("--logs", options->logs,
               "a folder for what each robot logs and says; default: it is kept only if something is wrong");
   verb.Option("--trace", options->trace, "write where the bodies are into this file (MCAP)");
+  verb.Flag("--open", options->open, "show it in a browser, with `--trace` or without (`rondo view`)");
   verb.Option("--ros2", options->ros2,
               "write a file for `ros2 launch` that runs the robots, and start nothing");
   verb.Flag("--fail-on-collision", options->fail_on_collision, "exit status 1 if robots touch anything");
@@ -324,7 +327,9 @@ void AddLaunchVerb(CLI::App& app, ExitStatus& status) {
       RefuseAll(verb, {"--choreography", "--option", "--projections", "--tolerance"},
                 "only choreographies have it");
     if (!choreography && options->files.size() > 1) RefuseOption("FILE", "a Koord program is one file");
+    if (options->open && options->trace.empty()) options->trace = PlaceForTrace();
     status = choreography ? LaunchParts(*options) : Run(*options);
+    if (options->open) ShowTrace(options->trace, options->json);
   });
 }
 

@@ -9,6 +9,7 @@
 #include "base/counted.h"
 #include "driver/command.h"
 #include "driver/logs_text.h"
+#include "driver/page.h"
 #include "driver/simulate_choreography.h"
 #include "driver/terminal.h"
 #include "driver/verbs.h"
@@ -38,6 +39,7 @@ struct Options {
   double duration = 0;
   unsigned jobs = 0;
   bool fail_on_collision = false;
+  bool open = false;
   bool json = false;
 };
 
@@ -297,6 +299,7 @@ void AddSimulateVerb(CLI::App& app, ExitStatus& status) {
               "seconds; default: as the fleet says; of choreographies at most 60")
       .Between(1e-3, 1e7);
   verb.Option("--trace", options->trace, "write everything that happens into this file (MCAP)");
+  verb.Flag("--open", options->open, "show it in a browser, with `--trace` or without (`rondo view`)");
   verb.Option("--jobs", options->jobs, "threads; default: one for each core. No run depends on it");
   verb.Flag("--fail-on-collision", options->fail_on_collision, "exit status 1 if robots touch anything");
   verb.Flag("--json", options->json, "the result as JSON on standard output");
@@ -321,7 +324,9 @@ void AddSimulateVerb(CLI::App& app, ExitStatus& status) {
       RefuseAll(verb, {"--choreography", "--option", "--projections", "--runs"},
                 "only choreographies have it");
     if (!choreography && options->files.size() > 1) RefuseOption("FILE", "a Koord program is one file");
+    if (options->open && options->trace.empty()) options->trace = PlaceForTrace();
     status = choreography ? RunChoreography(*options) : Run(*options);
+    if (options->open) ShowTrace(options->trace, options->json);
   });
 }
 

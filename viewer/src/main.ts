@@ -5,11 +5,12 @@ import { eventsScreen } from "./screens/events.ts";
 import { plotsScreen } from "./screens/plots.ts";
 import { runScreen } from "./screens/run.ts";
 import { sourceScreen } from "./screens/source.ts";
+import { statesScreen } from "./screens/states.ts";
 import { storyScreen } from "./screens/story.ts";
 import { SCREENS, type Screen, State } from "./state.ts";
 import { timeline } from "./timeline.ts";
 
-const NAMES: Record<Screen, string> = { run: "Run", story: "Story", plots: "Plots", events: "Events", source: "Source" };
+const NAMES: Record<Screen, string> = { run: "Run", story: "Story", states: "States", plots: "Plots", events: "Events", source: "Source" };
 
 /** Opens what `rondo view` put into the page: gzip in base64, in a script that is none. */
 async function embedded(): Promise<{ name: string; bytes: Uint8Array } | null> {
@@ -25,7 +26,8 @@ function open(name: string, bytes: Uint8Array): void {
   const recording = readRecording(name, bytes);
   const state = new State(recording);
   const made: Record<Screen, () => HTMLElement> = {
-    run: () => runScreen(state), story: () => storyScreen(state), plots: () => plotsScreen(state),
+    run: () => runScreen(state), story: () => storyScreen(state), states: () => statesScreen(state),
+    plots: () => plotsScreen(state),
     events: () => eventsScreen(state), source: () => sourceScreen(state),
   };
   const main = el("main", { id: "screen", tabindex: -1 });
@@ -59,6 +61,8 @@ function open(name: string, bytes: Uint8Array): void {
   });
   window.addEventListener("hashchange", () => state.fromHash(location.hash));
   state.fromHash(location.hash);
+  // A run without any place is looked at as a story.
+  if (location.hash === "" && recording.bodies.length === 0 && recording.robots.every((robot) => robot.pose.times.length === 0)) state.change({ screen: "story" });
   run(state);
   Object.assign(window, { rondo: { state } }); // for tests, and for whoever is curious
 }

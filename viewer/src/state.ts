@@ -1,6 +1,6 @@
 import { last, type Happening, type Recording } from "./data/recording.ts";
 
-export const SCREENS = ["run", "story", "plots", "events", "source"] as const;
+export const SCREENS = ["run", "story", "states", "plots", "events", "source"] as const;
 export type Screen = (typeof SCREENS)[number];
 
 /** What is looked at: one moment, one robot, one screen. Lives in the address, so that it can be passed on. */

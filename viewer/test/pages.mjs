@@ -11,7 +11,7 @@ const [modules, pictures, ...pages] = process.argv.slice(2);
 const require = createRequire(join(resolve(modules), "x.js"));
 const { chromium } = require("playwright-core");
 const axe = readFileSync(join(resolve(modules), "axe-core/axe.min.js"), "utf8");
-const SCREENS = ["run", "story", "plots", "events", "source"];
+const SCREENS = ["run", "story", "states", "plots", "events", "source"];
 
 const browser = await chromium.launch({
   executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",

@@ -54,6 +54,8 @@ export interface Recording {
   bodies: { time: number; bytes: Uint8Array }[];
   map: { time: number; bytes: Uint8Array }[];
   rounds: { time: number; round: number; events: string[] }[];
+  /** What all variables were, as often as the trace says it. */
+  states: { time: number; label: string; state: Json }[];
   happenings: Happening[];
   spans: Span[];
   arrows: Arrow[];
@@ -63,7 +65,7 @@ export interface Recording {
   problems: string[];
 }
 
-type Json = Record<string, unknown>;
+export type Json = Record<string, unknown>;
 
 function object(value: unknown): Json {
   return typeof value === "object" && value !== null && !Array.isArray(value) ? (value as Json) : {};
@@ -77,19 +79,24 @@ function number(value: unknown): number {
 
 class Reader {
   readonly recording: Recording = {
-    title: "", run: {}, robots: [], world: [], bodies: [], map: [], rounds: [], happenings: [], spans: [], arrows: [],
+    title: "", run: {}, robots: [], world: [], bodies: [], map: [], rounds: [], states: [], happenings: [], spans: [], arrows: [],
     begin: 0, end: 0, problems: [],
   };
   private readonly open = new Map<number, Span>();
   private damaged = 0;
+  private origin: number | null = null;
+  private lines = 0;
 
   read(name: string, file: Uint8Array): Recording {
     const r = this.recording;
     r.title = name;
     const wrong = forEachMessage(file, (message) => {
       try {
-        r.end = Math.max(r.end, message.time < 1e9 ? message.time : r.end);
-        this.message(message.topic, message.time, message.bytes, message.encoding);
+        // Logs of robots count from 1970: then the first message is the beginning.
+        this.origin ??= message.time > 1e8 ? message.time : 0;
+        const time = Math.max(0, message.time - this.origin);
+        r.end = Math.max(r.end, time);
+        this.message(message.topic, time, message.bytes, message.encoding);
       } catch (error) {
         if (!(error instanceof RangeError || error instanceof SyntaxError)) throw error;
         ++this.damaged;
@@ -99,6 +106,7 @@ class Reader {
     if (this.damaged > 0) r.problems.push(`${this.damaged} messages could not be read`);
     for (const span of this.open.values()) r.spans.push({ ...span, to: r.end });
     r.spans.sort((a, b) => a.from - b.from);
+    this.finish();
     const name_ = string(r.run["program_name"]);
     if (name_ !== "") r.title = `${name_}, ${r.run["seed"] === undefined ? "no seed" : `seed ${string(r.run["seed"])}`}`;
     return r;
@@ -121,6 +129,8 @@ class Reader {
       if (topic === "/rondo/run") this.run(json);
       if (topic === "/rondo/round") this.round(time, json);
       if (topic === "/rondo/event") this.event(time, json);
+      if (topic === "/rondo/step") this.step(time, json);
+      if (topic === "/rondo/log") this.line(time, json);
       return;
     }
     if (topic === "/world") r.world = readMarkers(bytes);
@@ -154,6 +164,41 @@ class Reader {
   private round(time: number, json: Json): void {
     const events = Array.isArray(json["events"]) ? json["events"].map(string) : [];
     this.recording.rounds.push({ time, round: number(json["round"]), events });
+  }
+
+  // A step of a run that was explored.
+  private step(time: number, json: Json): void {
+    const round = this.recording.rounds.length;
+    const events = Array.isArray(json["events"]) ? json["events"].map(string) : [];
+    this.recording.rounds.push({ time, round, events });
+    this.recording.states.push({ time, label: round === 0 ? "start" : `round ${round}`, state: object(json["state"]) });
+  }
+
+  // A line of the log of a robot, or of the logs of all.
+  private line(time: number, json: Json): void {
+    const did = string(json["did"]);
+    const robot = this.index(json["robot"]);
+    ++this.lines;
+    // Robots of choreographies say what simulations do: a message is told by whom it is for.
+    if (did === "begins" || did === "ends") return this.event(time, { kind: did, robot: json["robot"], motion: json["what"] });
+    if (did === "took") return this.event(time, { kind: "message", from: json["peer"], to: json["robot"], label: json["what"], values: json["values"] });
+    const place = json["round"] === undefined ? "" : `epoch ${string(json["epoch"])}, round ${string(json["round"])}`;
+    const words = [place, string(json["what"]), string(json["peer"]) && `with ${string(json["peer"])}`, string(json["said"])];
+    const findings = Array.isArray(this.recording.run["findings"]) ? this.recording.run["findings"].map(object) : [];
+    for (const finding of findings.filter((f) => f["line"] === this.lines - 1))
+      this.recording.happenings.push({ time, kind: string(finding["wrong"]), robots: [robot], text: string(finding["text"]), bad: true });
+    this.recording.happenings.push({ time, kind: did, robots: [robot], text: words.filter((w) => w !== "").join(", "), bad: did === "breaks" });
+    if (place !== "") this.recording.spans.push({ robot, text: `${did} ${place}`, from: time, to: time });
+    if (typeof json["state"] === "object") this.recording.states.push({ time, label: `${this.recording.robots[robot]?.name ?? ""}: ${place}`, state: object(json["state"]) });
+  }
+
+  // What a run breaks, it breaks at its end.
+  private finish(): void {
+    const r = this.recording;
+    const breaks = string(r.run["breaks"]);
+    if (breaks !== "") r.happenings.push({ time: r.end, kind: "breaks", robots: [], text: breaks, bad: true });
+    const wrong = string(r.run["wrong"]);
+    if (wrong !== "" && !r.happenings.some((h) => h.bad)) r.happenings.push({ time: r.end, kind: "wrong", robots: [], text: wrong, bad: true });
   }
 
   private event(time: number, json: Json): void {
@@ -213,7 +258,7 @@ class Reader {
 
   // Robots are named, or numbered from 0.
   private index(robot: unknown): number {
-    return typeof robot === "number" ? robot : this.robot(string(robot));
+    return typeof robot === "number" && Number.isInteger(robot) && robot >= 0 && robot < this.recording.robots.length ? robot : this.robot(string(robot));
   }
 }
 

@@ -39,7 +39,7 @@ function rows(state: State, name: string, index: number): HTMLElement[] {
   const numbers = pose === null ? ["", "", "", ""] : [...pose.position.map((v) => v.toFixed(3)), heading.toFixed(1)];
   const mark = chosen ? { class: "chosen" } : {};
   const first = el("tr", mark, el("th", { scope: "row" }, choose), ...numbers.map((text) => el("td", {}, text)));
-  return states === "" ? [first] : [first, el("tr", mark, el("td", { class: "states", colspan: 5 }, states))];
+  return states === "" ? [first] : [first, el("tr", mark, el("td", { class: "of", colspan: 5 }, states))];
 }
 
 async function save(stage: Stage): Promise<void> {

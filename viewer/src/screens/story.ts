@@ -2,7 +2,7 @@ import { colourOf } from "../colours.ts";
 import { el, seconds, svg } from "../dom.ts";
 import type { State } from "../state.ts";
 
-const AXIS = 104, LANE = 190, SECOND = 40, MOST = 30_000, HEAD = 40; // pixels
+const AXIS = 104, NARROW = 190, WIDE = 420, SECOND = 40, MOST = 30_000, HEAD = 40; // pixels
 
 /**
  * A lane for each robot, time downwards: what it did for how long, messages as arrows, rounds as lines with the event that each robot ran.
@@ -10,18 +10,19 @@ const AXIS = 104, LANE = 190, SECOND = 40, MOST = 30_000, HEAD = 40; // pixels
  */
 export function storyScreen(state: State): HTMLElement {
   const { recording } = state;
+  const lane = Math.max(NARROW, Math.min(WIDE, (window.innerWidth - AXIS - 40) / Math.max(1, recording.robots.length)));
   const scale = Math.min(SECOND, MOST / Math.max(1, recording.end - recording.begin));
   const y = (time: number) => 14 + (time - recording.begin) * scale;
-  const x = (robot: number) => AXIS + LANE * (robot + 0.5);
-  const width = AXIS + LANE * recording.robots.length + 20;
+  const x = (robot: number) => AXIS + lane * (robot + 0.5);
+  const width = AXIS + lane * recording.robots.length + 20;
   const height = y(recording.end) + 30;
   const drawing = svg("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": "what each robot did; the screen of events says the same in words" });
-  const heads = svg("svg", { width, height: HEAD, viewBox: `0 0 ${width} ${HEAD}`, class: "heads", role: "img", "aria-label": "the robots" });
+  const heads = svg("svg", { width, height: HEAD, class: "heads", role: "img", "aria-label": "the robots" });
   recording.robots.forEach((robot, i) => {
     drawing.append(svg("line", { x1: x(i), x2: x(i), y1: 0, y2: height, class: "lane" }));
     heads.append(
-      svg("rect", { x: x(i) - LANE / 2 + 8, y: 8, width: LANE - 16, height: 24, rx: 4, fill: colourOf(i) }),
-      svg("text", { x: x(i), y: 25, class: "name" }, short(robot.name, LANE - 24)));
+      svg("rect", { x: x(i) - lane / 2 + 8, y: 8, width: lane - 16, height: 24, rx: 4, fill: colourOf(i) }),
+      svg("text", { x: x(i), y: 25, class: "name" }, short(robot.name, lane - 24)));
   });
   const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 30, 60, 300, 600].find((s) => s * scale >= 40) ?? 3600;
   for (let t = Math.ceil(recording.begin / step) * step; t <= recording.end; t += step)
@@ -31,14 +32,14 @@ export function storyScreen(state: State): HTMLElement {
     const bar = svg("rect", { x: x(span.robot) - 7, y: y(span.from), width: 14, height: h, rx: 3, class: "span", fill: colourOf(span.robot) });
     bar.append(svg("title", {}, `${span.text}, ${seconds(span.from)} to ${seconds(span.to)}`));
     drawing.append(bar);
-    if (h >= 14) drawing.append(svg("text", { x: x(span.robot) + 12, y: y(span.from) + 12, class: "small" }, short(span.text, LANE / 2 - 8)));
+    if (h >= 14) drawing.append(svg("text", { x: x(span.robot) + 12, y: y(span.from) + 12, class: "small" }, short(span.text, lane / 2 - 8)));
   }
   let below = -Infinity;
   for (const round of recording.rounds) {
     if (y(round.time) < below) continue; // too near: the table has all
     below = y(round.time) + 14;
     round.events.forEach((event, robot) => {
-      if (event !== "") drawing.append(svg("text", { x: x(robot), y: y(round.time) + 4, class: "event" }, short(event, LANE - 12)));
+      if (event !== "") drawing.append(svg("text", { x: x(robot), y: y(round.time) + 4, class: "event" }, short(event, lane - 12)));
     });
     drawing.append(svg("text", { x: 4, y: y(round.time) + 4, class: "small" }, `#${round.round}`));
   }
@@ -50,10 +51,10 @@ export function storyScreen(state: State): HTMLElement {
     const back = to > from ? -1 : 1;
     drawing.append(
       svg("path", { d: `M ${from} ${at} H ${to} m ${7 * back} -4 l ${-7 * back} 4 l ${7 * back} 4`, class: "arrow" }),
-      svg("text", { x: from + (to > from ? LANE : -LANE) / 2, y: at - 4, class: "message" }, short(arrow.text, LANE - 20)));
+      svg("text", { x: from + (to > from ? lane : -lane) / 2, y: at - 4, class: "message" }, short(arrow.text, lane - 20)));
   }
   for (const happening of recording.happenings.filter((h) => h.bad))
-    drawing.append(svg("text", { x: AXIS + 4, y: y(happening.time) - 4, class: "bad" }, `✗ ${happening.text}`));
+    drawing.append(svg("text", { x: AXIS + 4, y: y(happening.time) + 18, class: "bad" }, `✗ ${happening.text}`));
   const cursor = svg("line", { x1: 0, x2: width, class: "cursor" });
   drawing.append(cursor);
   drawing.addEventListener("click", (event) => {
