@@ -26,12 +26,15 @@ void AddAstVerb(CLI::App& app, ExitStatus& status) {
     workspace::Session session;
     const auto program = workspace::ReadKoord({options->file, {}, false}, session);
     if (!program || session.diagnostics.has_errors()) {
-      PrintDiagnostics(session.sources, session.diagnostics);
-      status = ExitStatus::kRejected;
+      status = Refuse("ast", options->file, options->json, session.sources, session.diagnostics, "");
       return;
     }
     if (options->json) {
-      PrintJson(koord::ToJson(session.sources, *program));
+      PrintJson({{"command", "ast"},
+                 {"file", options->file},
+                 {"status", ExitStatus::kEstablished},
+                 {"program", koord::ToJson(session.sources, *program)},
+                 {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}});
     } else {
       Print(koord::Skeleton(*program));
     }

@@ -107,7 +107,10 @@ ExitStatus Run(const Options& options) {
   const bool good = !session.diagnostics.has_errors() && !stopped;
   if (options.json) {
     const nlohmann::json diagnostics = diag::RenderJson(session.sources, session.diagnostics);
-    PrintJson({{"command", "certify"}, {"ok", good}, {"files", list}, {"diagnostics", diagnostics}});
+    PrintJson({{"command", "certify"},
+               {"status", good ? ExitStatus::kEstablished : ExitStatus::kRejected},
+               {"files", list},
+               {"diagnostics", diagnostics}});
   } else {
     Print(text);
     PrintDiagnostics(session.sources, session.diagnostics);

@@ -38,14 +38,15 @@ ExitStatus Run(const Options& options) {
     if (program && session.diagnostics.errors() == before) koord::Check(*program, session.diagnostics);
   }
   for (const auto& files : motion) workspace::CheckModule(files, options.admitted, session);
-  const bool good = !session.diagnostics.has_errors();
+  const ExitStatus status =
+      session.diagnostics.has_errors() ? ExitStatus::kRejected : ExitStatus::kEstablished;
   if (options.json) {
     const nlohmann::json list = diag::RenderJson(session.sources, session.diagnostics);
-    PrintJson({{"command", "check"}, {"ok", good}, {"diagnostics", list}});
+    PrintJson({{"command", "check"}, {"status", status}, {"diagnostics", list}});
   } else {
     PrintDiagnostics(session.sources, session.diagnostics);
   }
-  return good ? ExitStatus::kEstablished : ExitStatus::kRejected;
+  return status;
 }
 
 }  // namespace

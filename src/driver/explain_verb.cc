@@ -25,7 +25,9 @@ ExitStatus Explain(const std::string& id, bool json) {
     return ExitStatus::kUsage;
   }
   if (json) {
-    PrintJson({{"kind", info->id},
+    PrintJson({{"command", "explain"},
+               {"status", ExitStatus::kEstablished},
+               {"kind", info->id},
                {"severity", diag::SeverityName(info->severity)},
                {"summary", info->summary},
                {"explanation", info->explanation},
@@ -72,7 +74,8 @@ void AddExplainVerb(CLI::App& app, ExitStatus& status) {
       else
         Print(fmt::format("{:28} {:8} {}\n", info.id, diag::SeverityName(info.severity), info.summary));
     }
-    if (options->json) PrintJson(list);
+    if (options->json)
+      PrintJson({{"command", "explain"}, {"status", ExitStatus::kEstablished}, {"kinds", list}});
   });
 }
 

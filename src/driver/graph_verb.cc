@@ -132,7 +132,7 @@ ExitStatus Run(const Options& options) {
     nlohmann::json list = nlohmann::json::array();
     for (const Graph* graph : graphs) list.push_back(ToJson(*graph, module->module.exprs));
     PrintJson({{"command", "graph"},
-               {"ok", good},
+               {"status", good ? ExitStatus::kEstablished : ExitStatus::kRejected},
                {"graphs", good ? list : nlohmann::json::array()},
                {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}});
   } else {

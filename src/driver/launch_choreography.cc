@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -23,12 +24,17 @@ json Finite(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
 std::string TextOf(const deploy::SessionsReport& judged) {
   std::string text = fmt::format("  {}, {}", base::Counted(judged.messages, "message"),
                                  base::Counted(judged.motions, "motion"));
-  text += judged.findings.empty() ? "; all as the choreography says\n" : "\n";
+  text += judged.findings.empty() ? "; their order is as the choreography says\n" : "\n";
   for (const std::string& finding : judged.findings) text += fmt::format("  {}\n", finding);
+  for (const auto& end : judged.ends)
+    text += end.why.empty() ? fmt::format("  {}: {}\n", end.robot, end.outcome)
+                            : fmt::format("  {}: {}: {}\n", end.robot, end.outcome, end.why);
   for (const std::string& gap : judged.gaps) text += fmt::format("  not judged: {}\n", gap);
   for (const auto& miss : judged.broken)
-    text += fmt::format("  `{}: {}` missed its contract by {:.2g} (SI units)\n", miss.robot, miss.motion,
-                        miss.missed);
+    text += std::isfinite(miss.missed) ? fmt::format("  `{}: {}` missed its contract by {:.2g} (SI units)\n",
+                                                     miss.robot, miss.motion, miss.missed)
+                                       : fmt::format("  `{}: {}`: its contract has no value where it was\n",
+                                                     miss.robot, miss.motion);
   if (judged.broken.empty() && judged.worst.missed > 0)
     text += fmt::format("  contracts kept up to {:.2g} (SI units), as sensors tell: `{}: {}` missed most\n",
                         judged.worst.missed, judged.worst.robot, judged.worst.motion);
@@ -38,36 +44,50 @@ std::string TextOf(const deploy::SessionsReport& judged) {
 json JsonOf(const deploy::SessionsReport& judged) {
   json broken = json::array();
   for (const auto& m : judged.broken)
-    broken.push_back({{"robot", m.robot}, {"motion", m.motion}, {"missed", m.missed}});
-  return {{"messages", judged.messages}, {"motions", judged.motions}, {"findings", judged.findings},
-          {"gaps", judged.gaps},         {"broken", broken},          {"missed", judged.worst.missed}};
+    broken.push_back({{"robot", m.robot}, {"motion", m.motion}, {"missed", Finite(m.missed)}});
+  json ends = json::array();
+  for (const auto& e : judged.ends)
+    ends.push_back({{"robot", e.robot}, {"ended", e.outcome}, {"why", e.why}});
+  return {{"messages", judged.messages},
+          {"motions", judged.motions},
+          {"findings", judged.findings},
+          {"gaps", judged.gaps},
+          {"ends", ends},
+          {"broken", broken},
+          {"missed", Finite(judged.worst.missed)}};
 }
 
+// Whether robots were stopped is for whoever judges to say.
 ExitStatus StatusOf(const deploy::SessionsReport& judged) {
   if (!judged.findings.empty() || !judged.broken.empty()) return ExitStatus::kRejected;
-  return judged.gaps.empty() ? ExitStatus::kEstablished : ExitStatus::kUndecided;
+  bool whole = judged.gaps.empty();
+  for (const auto& end : judged.ends) {
+    if (end.outcome == "failed" || end.outcome == "lost") return ExitStatus::kRejected;
+    whole = false;
+  }
+  return whole ? ExitStatus::kEstablished : ExitStatus::kUndecided;
 }
 
-// What became of a robot, if that is not the end of its part.
+// What became of the process of a robot, if its log does not say it.
 std::string EndOf(const runs::LaunchChoreographyReport& report, const runs::RobotEnd& end) {
-  const auto left = report.left.find(end.robot);
+  if (report.interrupted || report.time_over) return {};
   if (end.signal != 0)
     return fmt::format("  {}: signal {} ended it; what it said is in {}\n", end.robot, end.signal,
                        end.output);
-  if (left != report.left.end() && left->second.outcome != "over")
-    return fmt::format("  {}: {}: {}\n", end.robot, left->second.outcome, left->second.what);
-  if (end.status != 0 && !report.interrupted && !report.time_over)
-    return fmt::format("  {}: ended with status {}; what it said is in {}\n", end.robot, end.status,
-                       end.output);
-  return {};
+  const auto of_it = [&](const auto& list) {
+    return std::ranges::any_of(list, [&](const auto& one) { return one.robot == end.robot; });
+  };
+  if (end.status == 0 || of_it(report.judged.ends) || of_it(report.judged.broken)) return {};
+  return fmt::format("  {}: ended with status {}; what it said is in {}\n", end.robot, end.status,
+                     end.output);
 }
 
 ExitStatus StatusOf(const runs::LaunchChoreographyReport& report) {
-  ExitStatus status = StatusOf(report.judged);
-  if (report.interrupted) status = std::max(status, ExitStatus::kUndecided);
-  bool bad = !report.stage.incidents.empty() || StatusOf(report.judged) == ExitStatus::kRejected;
+  const ExitStatus judged = StatusOf(report.judged);
+  bool bad = !report.stage.incidents.empty() || judged == ExitStatus::kRejected;
   for (const runs::RobotEnd& end : report.robots) bad = bad || !EndOf(report, end).empty();
-  return bad ? ExitStatus::kRejected : status;
+  if (bad) return ExitStatus::kRejected;
+  return report.interrupted ? ExitStatus::kUndecided : judged;
 }
 
 std::string TextOf(const runs::LaunchChoreographyReport& report) {
@@ -87,7 +107,8 @@ std::string TextOf(const runs::LaunchChoreographyReport& report) {
   for (const runs::RobotEnd& end : report.robots) ends += EndOf(report, end);
   if (report.interrupted) return text + ends + "  interrupted\n";
   if (report.time_over) return text + ends + "  the time was over\n";
-  return text + (ends.empty() ? "  every robot is at its end\n" : ends);
+  const bool whole = ends.empty() && report.judged.ends.empty() && report.judged.gaps.empty();
+  return text + (whole ? "  every robot is at its end\n" : ends);
 }
 
 json JsonOf(const runs::LaunchChoreographyReport& report) {
@@ -114,6 +135,15 @@ json JsonOf(const runs::LaunchChoreographyReport& report) {
           {"unchecked", report.stage.unchecked},
           {"behind", report.behind},
           {"judged", JsonOf(report.judged)}};
+}
+
+// A file as a shell takes it.
+std::string Quoted(const std::string& file) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";
+  if (file.find_first_not_of(kPlain) == std::string::npos) return file;
+  std::string quoted = "'";
+  for (const char c : file) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 // One line for the terminal: what each robot did last.
@@ -177,7 +207,11 @@ ExitStatus LaunchChoreography(LaunchedChoreographyOptions options) {
   }
   Print(fmt::format("{}: {}, each a process, bodies over ROS topics; seed {}\n{}", name,
                     base::Counted(report.robots.size(), "robot"), launch.seed, TextOf(report)));
-  if (keep) Print(fmt::format("logs: {0}: `rondo replay {0}/*.mcap*`\n", launch.logs));
+  if (keep) {
+    std::string replay;
+    for (const runs::RobotEnd& end : report.robots) replay += " " + Quoted(end.log);
+    Print(fmt::format("logs: `rondo replay{}`\n", replay));
+  }
   if (!launch.trace.empty()) Print(fmt::format("trace: {}\n", launch.trace));
   PrintDiagnostics(session.sources, session.diagnostics);
   return status;

@@ -86,7 +86,7 @@ ExitStatus Run(const Options& options) {
   if (options.json) {
     const nlohmann::json diagnostics = diag::RenderJson(session.sources, session.diagnostics);
     PrintJson({{"command", "project"},
-               {"ok", good},
+               {"status", good ? ExitStatus::kEstablished : ExitStatus::kRejected},
                {"types", good ? list : nlohmann::json::array()},
                {"diagnostics", diagnostics}});
   } else {

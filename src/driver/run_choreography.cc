@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/counted.h"
@@ -40,6 +41,8 @@ std::string Tell(const deploy::PlayerReport& report) {
                                       : "  interrupted: it stays where it is\n");
     case Outcome::kFailed:
       return text + fmt::format("  it could not go on, and stays where it is: {}\n", report.why);
+    case Outcome::kStopped:
+      return text + fmt::format("  stopped, and stays where it is: {}\n", report.why);
     case Outcome::kLost:
       return text + fmt::format("  it gave up, and stays where it is: {}\n", report.why);
   }
@@ -88,19 +91,23 @@ ExitStatus RunChoreography(const RunChoreographyOptions& options) {
   const deploy::PlayerReport& report = ran.value();
   const ExitStatus status = StatusOf(report);
   if (options.json) {
-    PrintJson({{"command", "run"},
-               {"file", file},
-               {"choreography", graph.source->name.text},
-               {"robot", options.robot},
-               {"ended", Name(report.outcome)},
-               {"why", report.why},
-               {"time", report.time},
-               {"messages", report.messages},
-               {"motions", report.motions},
-               {"missed", {{"most", report.missed}, {"motion", report.missed_by}, {"broken", report.broken}}},
-               {"log", report.log},
-               {"status", status},
-               {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}});
+    PrintJson(
+        {{"command", "run"},
+         {"file", file},
+         {"choreography", graph.source->name.text},
+         {"robot", options.robot},
+         {"ended", Name(report.outcome)},
+         {"why", report.why},
+         {"time", report.time},
+         {"messages", report.messages},
+         {"motions", report.motions},
+         {"missed",
+          {{"most", std::isfinite(report.missed) ? nlohmann::json(report.missed) : nlohmann::json(nullptr)},
+           {"motion", report.missed_by},
+           {"broken", report.broken}}},
+         {"log", report.log},
+         {"status", status},
+         {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}});
     return status;
   }
   Print(fmt::format("{}: {}\n{}", graph.source->name.text, options.robot, Tell(report)));

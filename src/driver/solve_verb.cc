@@ -103,7 +103,7 @@ ExitStatus Run(const Options& options) {
   if (session.diagnostics.has_errors()) {
     if (options.json) {
       PrintJson({{"command", "solve"},
-                 {"ok", false},
+                 {"status", ExitStatus::kRejected},
                  {"files", nlohmann::json::array()},
                  {"diagnostics", diagnostics}});
     } else {
@@ -149,10 +149,7 @@ ExitStatus Run(const Options& options) {
   if (options.json) {
     nlohmann::json files = nlohmann::json::array();
     for (const Item& item : items) files.push_back(ToJson(item));
-    PrintJson({{"command", "solve"},
-               {"ok", status == ExitStatus::kEstablished},
-               {"files", files},
-               {"diagnostics", diagnostics}});
+    PrintJson({{"command", "solve"}, {"status", status}, {"files", files}, {"diagnostics", diagnostics}});
     return status;
   }
   for (const Item& item : items) {

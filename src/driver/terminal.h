@@ -13,8 +13,9 @@ namespace rondo::driver {
 
 /// Writes text to standard output. A reader that went away is not an error.
 void Print(const std::string& text);
-/// Writes JSON, indented, to standard output. Bytes that are no UTF-8 become U+FFFD.
-void PrintJson(const nlohmann::json& json);
+/// Writes an object of the published schema (docs/json.md), indented, to standard output: adds the version of the schema. Bytes that
+/// are no UTF-8 become U+FFFD.
+void PrintJson(nlohmann::json json);
 /// Writes text to standard error, after what is already on its way to standard output.
 void PrintError(const std::string& text);
 

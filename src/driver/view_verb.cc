@@ -29,7 +29,7 @@ ExitStatus Run(const Options& options) {
     if (page.ok())
       out["page"] = page.value();
     else
-      out["problem"] = page.error().message;
+      out["error"] = page.error().message;
     PrintJson(out);
   } else if (!page.ok()) {
     PrintFailure(page.error().message);

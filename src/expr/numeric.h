@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <unordered_map>
 
 #include "expr/arena.h"
@@ -20,6 +21,8 @@ class Numeric {
   /// Returns how far the formula is from being true: 0 if it is. Of a comparison, by how much it fails; of a
   /// conjunction the largest, of a disjunction the smallest.
   double Violation(TermId formula) { return Miss(formula, true); }
+  /// Reports whether this is how far a formula is from being true where all that is missing is that a strict comparison is equal.
+  static bool OnEdge(double violation) { return violation == std::numeric_limits<double>::denorm_min(); }
 
  private:
   double One(TermId term);

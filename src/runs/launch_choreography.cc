@@ -37,6 +37,8 @@ class Launcher {
     if (!participant.ok()) return participant.error();
     if (const auto alone = Alone(*participant.value(), network.value().domain); !alone.ok())
       return alone.error();
+    report_.interrupted = options_.stop.StopRequested();
+    if (report_.interrupted) return std::move(report_);
     if (const auto opened = OpenTrace(); !opened.ok()) return opened.error();
     deploy::ChoreographyStage stage(staged_.cast, options_.seed, recorder_ ? &*recorder_ : nullptr);
     if (const auto begun = stage.Begin(*participant.value()); !begun.ok()) return begun.error();
@@ -58,6 +60,11 @@ class Launcher {
  private:
   base::Result<bool> OpenTrace() {
     if (options_.trace.empty()) return true;
+    for (const choreo::Name& robot : graph_.robots) {
+      if (fs::weakly_canonical(options_.trace) == fs::weakly_canonical(LogOf(robot.text)))
+        return base::Error{
+            fmt::format("`{}` is the log of `{}`: the trace needs another name", options_.trace, robot.text)};
+    }
     auto opened = trace::Writer::Open(options_.trace);
     if (!opened.ok())
       return base::Error{fmt::format("cannot write `{}`: {}", options_.trace, opened.error().message)};
@@ -71,13 +78,17 @@ class Launcher {
 
   // Bodies of another run would be read and obeyed as if they were ours.
   base::Result<bool> Alone(dds::Participant& participant, uint32_t domain) const {
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    constexpr int kLooks = 25;
+    for (int i = 0; i < kLooks && !options_.stop.StopRequested(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    std::vector<std::string> ours{"environment"};
+    for (const choreo::Name& robot : graph_.robots) ours.push_back(ros::Plain(robot.text));
     for (const auto& node : participant.Nodes()) {
-      for (const choreo::Name& robot : graph_.robots) {
-        if (node.name.node_namespace == "/" + ros::Plain(robot.text) && node.name.name == "driver")
+      for (const std::string& robot : ours) {
+        if (node.name.node_namespace == "/" + robot && node.name.name == "driver")
           return base::Error{fmt::format(
               "somebody else has a driver of `{}` in domain {}: end that, or use another ROS_DOMAIN_ID",
-              robot.text, domain)};
+              robot, domain)};
       }
     }
     return true;
@@ -127,24 +138,40 @@ class Launcher {
       report_.interrupted = options_.stop.StopRequested();
       report_.time_over = options_.duration > 0 && report_.time >= options_.duration;
       stopping_ = report_.interrupted || report_.time_over;
-      // Without one of them it never begins.
-      const bool hopeless = !begun_ && children_.Running() < graph_.robots.size();
-      if (stopping_ || hopeless) return;
+      // Without one of them it never begins, and ends soon.
+      const bool apart = children_.Running() < graph_.robots.size() || !report_.left.empty();
+      if (!apart) whole_ = stage.time();
+      constexpr double kFarewell = 5;  // seconds
+      const bool hopeless = apart && (!begun_ || stage.time() - whole_ > kFarewell);
+      const bool never = options_.duration > 0 && !begun_ && stage.time() > options_.duration + kFarewell;
+      if (stopping_ || hopeless || never) return;
     }
   }
 
   base::Result<bool> Judge() {
     std::vector<deploy::SessionLog> logs;
+    std::vector<std::string> unread;
     for (const choreo::Name& robot : graph_.robots) {
       const std::string whole = LogOf(robot.text);
       std::error_code ignored;
       const std::string file = fs::is_regular_file(whole, ignored) ? whole : whole + ".partial";
+      for (RobotEnd& end : report_.robots) {
+        if (end.robot == robot.text) end.log = file;
+      }
       auto log = deploy::ReadSessionLog(file);
-      if (log.ok()) logs.push_back(std::move(log).value());
+      if (log.ok())
+        logs.push_back(std::move(log).value());
+      else
+        unread.push_back(fmt::format("`{}`: {}", file, log.error().message));
     }
     auto judged = deploy::JudgeSessions(logs, staged_.cast);
     if (!judged.ok()) return judged.error();
     report_.judged = std::move(judged).value();
+    // That those were stopped who were told to stop is nothing to tell.
+    if (stopping_)
+      std::erase_if(report_.judged.ends,
+                    [](const auto& end) { return end.outcome == "left" || end.outcome == "stopped"; });
+    report_.judged.gaps.insert(report_.judged.gaps.end(), unread.begin(), unread.end());
     return true;
   }
 
@@ -157,6 +184,7 @@ class Launcher {
   std::optional<sim::motions::StageRecorder> recorder_;
   std::map<std::string, deploy::SessionEvent> last_;  // by robot
   std::optional<double> begun_;                       // seconds of the stage
+  double whole_ = 0;                                  // seconds of the stage until which all were there
   bool stopping_ = false;
   LaunchChoreographyReport report_;
   Children children_;

@@ -264,7 +264,7 @@ check("smt-out into nowhere", done.returncode == 1 and "cannot use the folder" i
 # JSON says what the text says.
 report = json.loads(rondo("prove", "--json", "examples/koord/mutex_naive.koord").stdout)
 check("json", report["status"] == 1 and report["diagnostics"][0]["kind"] == "koord-refuted", report)
-check("ast", json.loads(rondo("ast", "--json", LINEFORM).stdout)["items"][0]["name"] == "Motion")
+check("ast", json.loads(rondo("ast", "--json", LINEFORM).stdout)["program"]["items"][0]["name"] == "Motion")
 
 # A specification beside the program, or elsewhere.
 (FOLDER / "p.koord").write_text("local:\n    int n = 0\nStep:\n    eff:\n        n = 1\n")

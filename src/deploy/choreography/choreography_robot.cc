@@ -38,6 +38,7 @@ class PlayerProcess {
     nlohmann::json head = options_.record;
     head["engine"] = "session";
     head["robot"] = name_;
+    head["tolerance"] = options_.precision.tolerance;
     head["session"] = fmt::format("{:016x}", options_.session);
     report_.log = UnusedLogName(options_.log);
     auto log = SessionLogWriter::Open(report_.log, head);
@@ -64,6 +65,8 @@ class PlayerProcess {
     const robot::World& world = *cast_.graph->world;
     const expr::Arena& arena = cast_.declarations->evaluator().arena();
     const sim::motions::SceneState scene(world);
+    if (const std::string both = platform::Collision(world, arena, scene); !both.empty())
+      return base::Error{both};
     // Who stands on another robot has to know where that is.
     std::vector<size_t> heard;
     for (std::optional<size_t> r = options_.robot.index(); r; r = world.bodies[*r].parent)
@@ -71,7 +74,7 @@ class PlayerProcess {
     std::vector<platform::BodyTopics> bodies;
     for (const size_t r : heard) bodies.push_back(platform::TopicsOf(world, r, arena, scene));
     std::vector<platform::Signal> signals = bodies[0].signals;
-    for (platform::Signal& s : platform::EnvironmentOf(world, scene)) signals.push_back(std::move(s));
+    for (platform::Signal& s : platform::EnvironmentOf(world, arena, scene)) signals.push_back(std::move(s));
     const std::string space = "/" + bodies[0].node_namespace;
     const size_t node = participant_->AddNode({space, "rondo"});
     const std::string events = bodies[0].Full("events");
@@ -219,23 +222,6 @@ class PlayerProcess {
 };
 
 }  // namespace
-
-uint64_t AgreementOf(const nlohmann::json& record) {
-  // Where the files lie does not matter.
-  runtime::codec::Bytes bytes;
-  runtime::codec::Writer writer(bytes);
-  const auto add = [&](const std::string& text) {
-    writer.Block({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
-  };
-  add(record.at("choreography").get<std::string>());
-  add(record.at("projections").dump());
-  add(record.at("admitted").dump());
-  std::vector<std::string> texts;
-  for (const auto& text : record.at("texts")) texts.push_back(text.get<std::string>());
-  std::ranges::sort(texts);
-  for (const std::string& text : texts) add(text);
-  return runtime::codec::Sum(bytes);
-}
 
 base::Result<PlayerReport> RunPlayer(const choreo::Cast& cast, const PlayerOptions& options) {
   PlayerProcess process(cast, options);

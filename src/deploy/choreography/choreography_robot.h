@@ -52,7 +52,4 @@ struct PlayerReport {
 /// @error if the network cannot be used, or a file not written.
 base::Result<PlayerReport> RunPlayer(const choreo::Cast& cast, const PlayerOptions& options);
 
-/// Returns the sum of what all robots must have in common: the texts of a choreography, and who follows what.
-uint64_t AgreementOf(const nlohmann::json& record);
-
 }  // namespace rondo::deploy

@@ -23,6 +23,8 @@ ChoreographyStage::ChoreographyStage(const choreo::Cast& cast, uint64_t seed,
 
 base::Result<bool> ChoreographyStage::Begin(dds::Participant& participant) {
   expr::Arena& arena = cast_.declarations->evaluator().arena();
+  if (const std::string both = platform::Collision(*cast_.graph->world, arena, scene_); !both.empty())
+    return base::Error{both};
   if (!sim::motions::Place(*cast_.graph, arena, scene_, random_))
     return base::Error{"no state was found in which the choreography may begin"};
   disturbances_.emplace(*cast_.graph->world, arena, scene_, random_);
@@ -70,6 +72,9 @@ void ChoreographyStage::Record(const SessionEvent& event, size_t robot) {
     recorder_->Incident(
         time_, Wrong::kContract,
         fmt::format("`{}: {}` missed its contract by {:.2g}", event.robot, event.what, event.missed));
+  if (event.did == Did::kLeaves && (event.outcome == "failed" || event.outcome == "lost"))
+    recorder_->Incident(time_, Wrong::kGaveUp,
+                        fmt::format("`{}`: {}: {}", event.robot, event.outcome, event.what));
   if (event.did != Did::kTook) return;
   if (const auto from = cast_.graph->Find(event.peer))
     recorder_->Message(time_, from->value, static_cast<uint32_t>(robot), event.what, event.values);

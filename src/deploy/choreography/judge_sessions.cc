@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "choreo/node/senses.h"
+#include "expr/substitute.h"
+#include "robot/values/value.h"
 #include "sim/motions/places.h"
 
 namespace rondo::deploy {
@@ -16,7 +19,10 @@ namespace {
 class Judge {
  public:
   Judge(const std::vector<SessionLog>& logs, const choreo::Cast& cast)
-      : graph_(*cast.graph), places_(cast), lines_(graph_.robots.size()) {
+      : graph_(*cast.graph),
+        arena_(cast.declarations->evaluator().arena()),
+        places_(cast),
+        lines_(graph_.robots.size()) {
     for (const SessionLog& log : logs) {
       if (const auto robot = graph_.Find(log.robot)) lines_[robot->index()].log = &log;
     }
@@ -69,9 +75,10 @@ class Judge {
         break;
       case Did::kEnds:
         if (e->missed > report_.worst.missed) report_.worst = missed();
+        if (e->missed > lines_[robot].log->tolerance) report_.broken.push_back(missed());
         break;
-      case Did::kBreaks:
-        report_.broken.push_back(missed());
+      case Did::kLeaves:
+        Leaves(robot, *e);
         break;
       default:
         break;
@@ -79,44 +86,86 @@ class Judge {
     return true;
   }
 
+  void Leaves(size_t robot, const SessionEvent& e) {
+    const RobotId id(robot);
+    if (lines_[robot].next < lines_[robot].log->events.size())
+      report_.findings.push_back(fmt::format("`{}` does something after it left", e.robot));
+    if (e.outcome != "over")
+      report_.ends.push_back({e.robot, e.outcome, e.what});
+    else if (!places_.MayEnd(id))
+      report_.findings.push_back(fmt::format("`{}` says that it is at its end, and is not", e.robot));
+  }
+
   // A message that is taken: the sender's next event is that it was.
   bool Together(size_t robot) {
     const SessionEvent* e = At(robot);
     const auto peer = e == nullptr ? std::nullopt : graph_.Find(e->peer);
     if (!peer) return false;
-    if (e->did == Did::kSent) return Silent(peer->index()) && Message(robot, peer->index(), e->what, robot);
+    if (e->did == Did::kSent) return Silent(peer->index()) && Message(robot, peer->index(), *e, robot);
     const SessionEvent* sent = At(peer->index());
     // Who goes before it has heard that its message was taken has sent it nevertheless.
     const bool open = Silent(peer->index()) || LeavesWithOne(peer->index());
-    if (open) return Message(peer->index(), robot, e->what, robot);
+    if (open) return Message(peer->index(), robot, *e, robot);
     if (sent == nullptr || sent->did != Did::kSent || sent->peer != e->robot || sent->what != e->what)
       return false;
     if (sent->values != e->values)
       report_.findings.push_back(
           fmt::format("`{}` took other values of `{}` than `{}` sent", e->robot, e->what, e->peer));
     ++lines_[peer->index()].next;
-    return Message(peer->index(), robot, e->what, robot);
+    return Message(peer->index(), robot, *e, robot);
   }
 
   bool LeavesWithOne(size_t robot) {
     const Line& line = lines_[robot];
     const bool left = At(robot) == nullptr && line.log != nullptr && !line.log->events.empty() &&
-                      line.log->events.back().did == Did::kLeaves;
+                      line.log->events.back().did == Did::kLeaves &&
+                      line.log->events.back().outcome != "over";
     return left && left_.insert(robot).second;
   }
 
   // Goes on in the log of `teller`, which tells of it.
-  bool Message(size_t from, size_t to, const std::string& what, size_t teller) {
+  bool Message(size_t from, size_t to, const SessionEvent& e, size_t teller) {
     ++lines_[teller].next;
     ++report_.messages;
     const RobotId sender(from), taker(to);
-    const bool sends = Unknown(from) || !places_.Says(sender, Action::Kind::kSend, taker, what).empty();
-    const bool takes = Unknown(to) || !places_.Says(taker, Action::Kind::kReceive, sender, what).empty();
-    if (!sends || !takes)
-      report_.findings.push_back(
-          fmt::format("`{}` from `{}` to `{}` is not what the choreography says comes next", what,
-                      graph_.NameOf(sender), graph_.NameOf(taker)));
+    const auto sent = places_.Says(sender, Action::Kind::kSend, taker, e.what);
+    const auto taken = places_.Says(taker, Action::Kind::kReceive, sender, e.what);
+    const std::string message =
+        fmt::format("`{}` from `{}` to `{}`", e.what, graph_.NameOf(sender), graph_.NameOf(taker));
+    if ((!Unknown(from) && sent.empty()) || (!Unknown(to) && taken.empty()))
+      report_.findings.push_back(message + " is not what the choreography says comes next");
+    const auto& nodes = sent.empty() ? taken : sent;
+    if (!nodes.empty() &&
+        std::ranges::none_of(nodes, [&](choreo::NodeId n) { return Carries(graph_[n], e.values); }))
+      report_.findings.push_back(message + " does not carry what the choreography says");
     return true;
+  }
+
+  // Whether a message may have these values, as far as that does not depend on states.
+  bool Carries(const choreo::Node& node, const std::vector<double>& values) const {
+    expr::Numeric::Point point;
+    std::vector<expr::TermId> told;
+    expr::Substitution bools;
+    size_t at = 0;
+    for (const robot::Value& value : node.payload) {
+      for (const expr::TermId t : value.terms) {
+        if (at == values.size()) return false;
+        const double v = values[at++];
+        if (arena_.op(t) != expr::Op::kVariable) continue;
+        told.push_back(t);
+        if (arena_.sort_of(t) == arena_.Bool())
+          bools.emplace(t, arena_.Constant(v != 0));
+        else
+          point.emplace(t, v);
+      }
+    }
+    if (at != values.size()) return false;
+    for (const expr::TermId t : robot::VariablesOf(arena_, {node.refinement})) {
+      if (std::ranges::find(told, t) == told.end()) return true;
+    }
+    const expr::TermId wanted = expr::Substitute(arena_, node.refinement, bools);
+    const double violation = expr::Numeric(arena_, point).Violation(wanted);
+    return violation <= choreo::kRounding && !expr::Numeric::OnEdge(violation);
   }
 
   // What has no counterpart.
@@ -134,6 +183,7 @@ class Judge {
   }
 
   const choreo::Graph& graph_;
+  expr::Arena& arena_;
   sim::motions::Places places_;
   std::vector<Line> lines_;  // by robot
   std::set<size_t> left_;    // who left with a message under way
@@ -147,6 +197,9 @@ base::Result<SessionsReport> JudgeSessions(const std::vector<SessionLog>& logs, 
   for (const SessionLog& log : logs) {
     if (log.session != logs[0].session)
       return base::Error{fmt::format("`{}` and `{}` are of different runs", logs[0].path, log.path)};
+    if (log.agreement != logs[0].agreement)
+      return base::Error{fmt::format("`{}` and `{}` are of different choreographies, or versions of one",
+                                     logs[0].path, log.path)};
     if (!cast.graph->Find(log.robot))
       return base::Error{fmt::format("`{}`: the choreography has no robot `{}`", log.path, log.robot)};
     if (!robots.insert(log.robot).second)

@@ -20,6 +20,11 @@ struct SessionsReport {
   std::vector<Miss>
       broken;  ///< motions that missed their contracts by more than the tolerance of their robots
   Miss worst;  ///< of all
+  struct End {
+    std::string robot, outcome;  ///< `runtime::sessions::Name(Outcome)`
+    std::string why;
+  };
+  std::vector<End> ends;  ///< of those that left before they were at their ends
 };
 
 /// Judges the logs of the robots of a choreography by its local types: each message is taken once, in the order in which it was sent,

@@ -1,6 +1,7 @@
 #include "deploy/choreography/session_event.h"
 
 #include <array>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace rondo::deploy {
@@ -57,7 +58,10 @@ std::optional<SessionEvent> EventIn(const nlohmann::json& j) {
       j.at("what").get_to(e.what);
       e.peer = j.value("peer", "");
       e.values = j.value("values", std::vector<double>());
-      e.missed = j.value("missed", 0.0);
+      // JSON has no infinity: of what has no value.
+      if (j.contains("missed"))
+        e.missed =
+            j["missed"].is_null() ? std::numeric_limits<double>::infinity() : j["missed"].get<double>();
       e.outcome = j.value("outcome", "");
       return e;
     }

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "platform/topics.h"
+#include "runtime/codec/bytes.h"
 #include "trace/reader.h"
 #include "transport/mailbox.h"
 
@@ -67,6 +68,23 @@ base::Result<bool> SessionLogWriter::Finish() {
   return writer_.Finish();
 }
 
+uint64_t AgreementOf(const nlohmann::json& record) {
+  // Where the files lie does not matter.
+  runtime::codec::Bytes bytes;
+  runtime::codec::Writer writer(bytes);
+  const auto add = [&](const std::string& text) {
+    writer.Block({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+  };
+  add(record.at("choreography").get<std::string>());
+  add(record.at("projections").dump());
+  add(record.at("admitted").dump());
+  std::vector<std::string> texts;
+  for (const auto& text : record.at("texts")) texts.push_back(text.get<std::string>());
+  std::ranges::sort(texts);
+  for (const std::string& text : texts) add(text);
+  return runtime::codec::Sum(bytes);
+}
+
 base::Result<SessionLog> ReadSessionLog(const std::string& path) {
   const auto bytes = trace::ReadTrace(path);
   if (!bytes.ok()) return bytes.error();
@@ -93,9 +111,12 @@ base::Result<SessionLog> ReadSessionLog(const std::string& path) {
       return base::Error{"this is no log of a robot of a choreography"};
     log.run.at("robot").get_to(log.robot);
     log.run.at("session").get_to(log.session);
+    log.run.at("tolerance").get_to(log.tolerance);
+    log.agreement = AgreementOf(log.run);
   } catch (const json::exception&) {
     return base::Error{"this is no log of a robot of a choreography, or it is damaged"};
   }
+  log.complete = log.complete && !log.events.empty() && log.events.back().did == Did::kLeaves;
   return log;
 }
 

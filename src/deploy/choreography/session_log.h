@@ -40,13 +40,19 @@ class SessionLogWriter {
   std::thread thread_;
 };
 
+/// Returns the sum of what all robots must have in common: the texts of a choreography, wherever they lie, and who follows what.
+/// The record is one of `runs::LogRecordOf`; what it lacks is reported as an exception of the library of JSON.
+uint64_t AgreementOf(const nlohmann::json& record);
+
 /// Is a log that was read.
 struct SessionLog {  // NOLINT(bugprone-exception-escape): moving JSON checks itself
   std::string path;
   nlohmann::json run;
   std::string robot, session;
   std::vector<SessionEvent> events;
-  bool complete = true;  ///< else its robot was killed
+  uint64_t agreement = 0;
+  double tolerance = 0;  ///< by which contracts may be missed
+  bool complete = true;  ///< it has the end of its robot's part; else that was killed, or the log was cut
 };
 
 /// Reads the log of one robot, complete or not. @error if it is none.

@@ -11,7 +11,7 @@
 namespace rondo::platform {
 
 BodyDrivers::BodyDrivers(const robot::World& world, const expr::Arena& arena, sim::motions::SceneState& scene)
-    : scene_(scene), environment_(EnvironmentOf(world, scene)) {
+    : scene_(scene), environment_(EnvironmentOf(world, arena, scene)) {
   for (size_t r = 0; r < world.bodies.size(); ++r) {
     One& one = ones_.emplace_back();
     one.topics = TopicsOf(world, r, arena, scene);

@@ -1,6 +1,10 @@
 #include "platform/motions/body_topics.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <map>
+#include <numbers>
 
 #include "robot/values/value.h"
 #include "ros/names.h"
@@ -26,9 +30,16 @@ BodyTopics TopicsOf(const robot::World& world, size_t robot, const expr::Arena& 
   topics.node_namespace = ros::Plain(body.name.text);
   const auto *x = Find(body, robot::kLength, {"x"}), *y = Find(body, robot::kLength, {"y"});
   const auto* yaw = Find(body, robot::kAngle, {"theta", "yaw"});
-  if (x != nullptr && y != nullptr) {
-    topics.base = Base{scene.Of(x->term), scene.Of(y->term), std::nullopt};
-    if (yaw != nullptr) topics.base->yaw = scene.Of(yaw->term);
+  expr::Numeric numeric(arena, {});
+  constexpr double kTurn = 2 * std::numbers::pi, kRounding = 1e-9;
+  const bool tells = yaw == nullptr || (yaw->least && yaw->most &&
+                                        numeric(*yaw->most) - numeric(*yaw->least) <= kTurn + kRounding);
+  if (x != nullptr && y != nullptr && tells) {
+    topics.base = Base{scene.Of(x->term), scene.Of(y->term), std::nullopt, 0};
+    if (yaw != nullptr) {
+      topics.base->yaw = scene.Of(yaw->term);
+      topics.base->heading = (numeric(*yaw->least) + numeric(*yaw->most)) / 2;
+    }
   }
   for (const robot::Variable& v : body.states) {
     if (!topics.base || (&v != x && &v != y && &v != yaw))
@@ -49,11 +60,44 @@ BodyTopics TopicsOf(const robot::World& world, size_t robot, const expr::Arena& 
   return topics;
 }
 
-std::vector<Signal> EnvironmentOf(const robot::World& world, const sim::motions::SceneState& scene) {
+std::vector<Signal> EnvironmentOf(const robot::World& world, const expr::Arena& arena,
+                                  const sim::motions::SceneState& scene) {
   std::vector<Signal> signals;
-  for (const robot::Variable& v : world.environment)
-    signals.push_back({"/environment/" + ros::Plain(v.name.text), scene.Of(v.term)});
+  for (const robot::Variable& v : world.environment) {
+    std::string name = "/environment";
+    std::string_view rest = arena.symbol(arena.symbol_of(v.term)).name;
+    while (!rest.empty()) {
+      const size_t dot = std::min(rest.find('.'), rest.size());
+      name += "/" + ros::Plain(rest.substr(0, dot));
+      rest.remove_prefix(std::min(dot + 1, rest.size()));
+    }
+    signals.push_back({std::move(name), scene.Of(v.term)});
+  }
   return signals;
+}
+
+std::string Collision(const robot::World& world, const expr::Arena& arena,
+                      const sim::motions::SceneState& scene) {
+  std::map<std::string, std::string> taken;  // by topic: of what
+  std::string found;
+  const auto take = [&](const std::string& topic, const std::string& of) {
+    const auto [it, fresh] = taken.emplace(topic, of);
+    if (!fresh && found.empty())
+      found = fmt::format("{} and {} would both be `{}` in ROS: give one of them another name", it->second,
+                          of, topic);
+  };
+  const auto named = [&](size_t place) {
+    return fmt::format("`{}`", arena.symbol(arena.symbol_of(scene.variables()[place])).name);
+  };
+  for (size_t r = 0; r < world.bodies.size(); ++r) {
+    const BodyTopics topics = TopicsOf(world, r, arena, scene);
+    const std::string robot = fmt::format("`{}`", world.bodies[r].name.text);
+    for (const char* topic : {"odom", "cmd_vel", "joint_states", "joint_trajectory", "events"})
+      take(topics.Full(topic), robot);
+    for (const Signal& s : topics.signals) take(s.topic, named(s.place));
+  }
+  for (const Signal& s : EnvironmentOf(world, arena, scene)) take(s.topic, named(s.place));
+  return found;
 }
 
 }  // namespace rondo::platform

@@ -14,6 +14,7 @@ namespace rondo::platform {
 struct Base {
   size_t x = 0, y = 0;
   std::optional<size_t> yaw;  ///< nothing: it never turns
+  double heading = 0;         ///< the middle of what that can be: radians
 };
 
 /// Is a joint: any other state of a robot.
@@ -42,12 +43,18 @@ struct BodyTopics {
 };
 
 /// Returns the topics of a robot. A robot has a base if two of its states are lengths called `x` and `y`; an angle `theta` or
-/// `yaw` is its heading then. Its signals are its parameters without a value, and those of its inputs that its dynamics do not
+/// `yaw` is its heading then. If that has a range of more than a full turn, no orientation tells it, and all of them are joints.
+/// Its signals are its parameters without a value, and those of its inputs that its dynamics do not
 /// read: the others are what moves it, or disturbs that.
 BodyTopics TopicsOf(const robot::World& world, size_t robot, const expr::Arena& arena,
                     const sim::motions::SceneState& scene);
 
-/// Returns the signals of the environment: `/environment/NAME`.
-std::vector<Signal> EnvironmentOf(const robot::World& world, const sim::motions::SceneState& scene);
+/// Returns the signals of the environment: `/environment/PART/NAME`.
+std::vector<Signal> EnvironmentOf(const robot::World& world, const expr::Arena& arena,
+                                  const sim::motions::SceneState& scene);
+
+/// Says which two things of a world would have one topic, because ROS has no other names for them; empty if there are none.
+std::string Collision(const robot::World& world, const expr::Arena& arena,
+                      const sim::motions::SceneState& scene);
 
 }  // namespace rondo::platform

@@ -13,6 +13,16 @@
 
 namespace rondo::platform {
 
+namespace {
+
+// The same heading, so many full turns on that it is next to another one.
+double NextTo(double heading, double other) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  return heading + kTurn * std::round((other - heading) / kTurn);
+}
+
+}  // namespace
+
 StateSenses::StateSenses(std::vector<BodyTopics> bodies, std::vector<Signal> signals, double max_age)
     : bodies_(std::move(bodies)), max_age_(max_age) {
   for (const BodyTopics& body : bodies_) {
@@ -20,7 +30,7 @@ StateSenses::StateSenses(std::vector<BodyTopics> bodies, std::vector<Signal> sig
     if (body.base) {
       values.push_back({body.base->x, 0, sources_.size(), false});
       values.push_back({body.base->y, 0, sources_.size(), false});
-      if (body.base->yaw) values.push_back({*body.base->yaw, 0, sources_.size(), true});
+      if (body.base->yaw) values.push_back({*body.base->yaw, body.base->heading, sources_.size(), true});
       sources_.push_back({body.Full("odom")});
     }
     for (const Joint& joint : body.joints) values.push_back({joint.place, 0, sources_.size(), false});
@@ -58,7 +68,7 @@ base::Result<bool> StateSenses::Begin(dds::Participant& participant, size_t node
         const std::array<double, 3> place{pose.position.x, pose.position.y, YawOf(pose.orientation)};
         if (!std::isfinite(place[0] + place[1] + place[2])) return false;
         for (size_t i = 0; i < place.size() && i < values.size() && values[i].source == values[0].source; ++i)
-          values[i].value = place[i];
+          values[i].value = values[i].turns ? NextTo(place[i], values[i].value) : place[i];
         return true;
       };
       const auto made =
@@ -114,11 +124,7 @@ std::string StateSenses::Unusable() const {
 
 void StateSenses::Read(size_t body, std::vector<double>& scene) const {
   const std::lock_guard lock(mutex_);
-  for (const Value& value : values_[body]) {
-    double& now = scene[value.place];
-    constexpr double kTurn = 2 * std::numbers::pi;
-    now = value.turns ? value.value + kTurn * std::round((now - value.value) / kTurn) : value.value;
-  }
+  for (const Value& value : values_[body]) scene[value.place] = value.value;
 }
 
 int64_t StateSenses::Heard(size_t body) const {

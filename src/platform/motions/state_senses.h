@@ -23,8 +23,8 @@ class StateSenses {
 
   /// Says, for people, what was never heard, or too long ago; empty if all is well.
   std::string Unusable() const;
-  /// Writes what was heard last over the values of a scene: of one of the bodies, or of all signals. Headings are those next to
-  /// what the scene says: they have no bounds there.
+  /// Writes what was heard last over the values of a scene: of one of the bodies, or of all signals. Headings begin within their
+  /// ranges, and are followed from there on.
   void Read(size_t body, std::vector<double>& scene) const;
   void ReadSignals(std::vector<double>& scene) const;
   /// Returns when the oldest part was heard of what is known of a body: CLOCK_BOOTTIME, nanoseconds.

@@ -20,6 +20,8 @@ std::string_view Name(Outcome outcome) {
       return "lost";
     case Outcome::kLeft:
       return "left";
+    case Outcome::kStopped:
+      return "stopped";
   }
   return "";
 }
@@ -85,8 +87,9 @@ void Member::Hear(Time now, View bytes, std::vector<Letter>& out) {
   const auto& alive = std::get<Alive>(datagram.body);
   if (phase_ == Phase::kGathering && alive != peer.alive) answers_ = true;
   peer.alive = alive;
-  if (alive.phase == Phase::kGone && outcome_ == Outcome::kOpen && phase_ != Phase::kFinished)
-    Lose(from, Trouble::kGone);
+  if (outcome_ != Outcome::kOpen || phase_ == Phase::kFinished) return;
+  if (alive.phase == Phase::kGone) Lose(from, Trouble::kGone);
+  if (alive.phase == Phase::kStopped) Lose(from, Trouble::kStopped);
 }
 
 bool Member::All(const std::function<bool(const Peer&)>& holds) const {
@@ -171,12 +174,12 @@ bool Member::AllAtTheirEnds() const {
 void Member::Lose(uint32_t robot, Trouble trouble) {
   trouble_ = trouble;
   culprit_ = robot;
-  End(Outcome::kLost);
+  End(trouble == Trouble::kStopped ? Outcome::kStopped : Outcome::kLost);
 }
 
 void Member::End(Outcome outcome) {
   outcome_ = outcome;
-  phase_ = Phase::kGone;
+  phase_ = outcome == Outcome::kLeft || outcome == Outcome::kStopped ? Phase::kStopped : Phase::kGone;
   answers_ = true;
 }
 
@@ -193,6 +196,8 @@ std::string Member::Why(const std::function<std::string(uint32_t)>& name) const 
       return name(culprit_) + " is silent";
     case Trouble::kGone:
       return name(culprit_) + " takes no part any more";
+    case Trouble::kStopped:
+      return name(culprit_) + " was stopped";
     case Trouble::kAgain:
       return name(culprit_) + " started again, and does not know where it was";
   }

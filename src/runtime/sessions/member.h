@@ -19,13 +19,14 @@ struct MemberSettings {
 
 /// Names what became of a session, for one robot.
 enum class Outcome : uint8_t {
-  kOpen,    ///< it goes on
-  kOver,    ///< all are at their ends, and know it, or have had the time to hear of it
-  kFailed,  ///< this robot cannot go on: a motion failed, a choice has no alternative
-  kLost,    ///< another robot is silent, is gone, or started again
-  kLeft,    ///< somebody asked this one to stop
+  kOpen,     ///< it goes on
+  kOver,     ///< all are at their ends, and know it, or have had the time to hear of it
+  kFailed,   ///< this robot cannot go on: a motion failed, a choice has no alternative
+  kLost,     ///< another robot is silent, is gone, or started again
+  kLeft,     ///< somebody asked this one to stop
+  kStopped,  ///< somebody asked another one to stop
 };
-/// Returns `open`, `over`, `failed`, `lost` or `left`.
+/// Returns `open`, `over`, `failed`, `lost`, `left` or `stopped`.
 std::string_view Name(Outcome outcome);
 
 /// Takes part in a session over a network that may lose, double, delay, exchange and damage datagrams: begins when all robots
@@ -74,7 +75,7 @@ class Member {
     Time heard = 0;
     Alive alive;
   };
-  enum class Trouble : uint8_t { kNone, kSilent, kGone, kAgain };
+  enum class Trouble : uint8_t { kNone, kSilent, kGone, kAgain, kStopped };
   void Hear(Time now, codec::View bytes, std::vector<Letter>& out);
   void Gather();
   void Run(Time now, std::vector<Letter>& out);

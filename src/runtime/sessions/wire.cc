@@ -74,6 +74,8 @@ std::string_view Name(Phase phase) {
       return "ended";
     case Phase::kFinished:
       return "finished";
+    case Phase::kStopped:
+      return "stopped";
     case Phase::kGone:
       return "gone";
   }

@@ -14,9 +14,10 @@ enum class Phase : uint8_t {
   kRunning,
   kEnded,     ///< its program is at its end, unless a message comes
   kFinished,  ///< so are those of all others, and no message is on its way
-  kGone,      ///< it takes no part any more: it was stopped, or cannot go on
+  kStopped,   ///< somebody wants the session to end, and asked this robot or another one to stop
+  kGone,      ///< it takes no part any more: it cannot go on
 };
-/// Returns `gathering`, `running`, `ended`, `finished` or `gone`.
+/// Returns `gathering`, `running`, `ended`, `finished`, `stopped` or `gone`.
 std::string_view Name(Phase phase);
 
 /// Says that a robot is there, and how far it is: to all, again and again.

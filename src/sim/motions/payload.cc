@@ -27,6 +27,7 @@ std::optional<std::vector<double>> DrawPayload(expr::Arena& arena, const choreo:
     if (!drawn) continue;
     expr::Numeric::Point point = state;
     for (const auto& [variable, value] : *drawn) point.insert_or_assign(variable, value);
+    if (expr::Numeric::OnEdge(expr::Numeric(arena, point).Violation(wanted))) continue;
     std::vector<robot::Value> payload = message.payload;
     for (robot::Value& value : payload) {
       for (expr::TermId& t : value.terms) t = expr::Substitute(arena, t, formulas);

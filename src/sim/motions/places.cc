@@ -46,6 +46,20 @@ const std::vector<std::pair<NodeId, size_t>>& Places::ThreadsAround(NodeId node)
   return it == threads_.end() ? kNone : it->second;
 }
 
+bool Places::MayEnd(RobotId robot) {
+  const choreo::LocalType& type = cast_.types[robot.index()];
+  std::vector<NodeId> skipped;
+  for (size_t i = 0; i <= type.states.size(); ++i) {
+    Choose(robot);
+    States& at = at_[robot.index()];
+    if (std::ranges::any_of(at, [&](StateId s) { return type.states[s.index()].ends; })) return true;
+    States over = Over(robot, skipped, true);
+    if (over.empty()) return false;
+    at = std::move(over);
+  }
+  return false;
+}
+
 double Places::LeastOf(RobotId robot) const {
   std::optional<double> least;
   for (const NodeId step : steps_[robot.index()]) {

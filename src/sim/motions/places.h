@@ -21,6 +21,8 @@ class Places {
   /// the choreography says comes next.
   std::vector<choreo::NodeId> Says(choreo::RobotId robot, choreo::Action::Kind kind, choreo::RobotId peer,
                                    const std::string& label);
+  /// Reports whether a robot may be at its end now, in motions that may be over.
+  bool MayEnd(choreo::RobotId robot);
   /// Returns the steps of the choreography that the present motion of a robot may belong to; none if that is not known.
   const std::vector<choreo::NodeId>& StepsOf(choreo::RobotId robot) const { return steps_[robot.index()]; }
   /// Returns how long, in seconds, its present step lasts at least: as long as the motion of it that takes longest.

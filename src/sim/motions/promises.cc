@@ -187,7 +187,7 @@ void Promises::Look(SceneState& scene, const std::vector<NodeId>& nodes, const s
       fmt::format("`{}` from `{}` to `{}`", node.label, graph.NameOf(node.from), graph.NameOf(node.to));
   if (when > Condition::kTolerance)
     tell(Wrong::kMessage, fmt::format("the guard of {} does not hold", message));
-  if (carries > Condition::kTolerance)
+  if (carries > Condition::kTolerance || expr::Numeric::OnEdge(carries))
     tell(Wrong::kMessage, fmt::format("{} does not carry what the choreography says", message));
 }
 

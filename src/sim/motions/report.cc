@@ -30,6 +30,8 @@ std::string_view Name(Wrong wrong) {
       return "waiting";
     case Wrong::kStuck:
       return "stuck";
+    case Wrong::kGaveUp:
+      return "gave-up";
     case Wrong::kNoTime:
       return "no-time";
   }

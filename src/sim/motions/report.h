@@ -24,6 +24,7 @@ enum class Wrong : uint8_t {
   kWaiting,       ///< time passes for a robot that makes no motion
   kStuck,         ///< everybody waits for a message that nobody sends
   kNoTime,        ///< things happen without end, and no time passes
+  kGaveUp,        ///< a robot (no simulated one) could not go on, or lost the others
 };
 
 /// Returns the name of the kind, as reports and JSON have it.

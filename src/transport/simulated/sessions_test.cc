@@ -185,7 +185,7 @@ TEST(Sessions, WhoIsStoppedTellsTheOthers) {
   air.Until(300 * kMillisecond);
   air.members[1]->Leave();
   air.Until(400 * kMillisecond);
-  EXPECT_EQ(air.Outcomes(), (std::vector{Outcome::kLost, Outcome::kLeft, Outcome::kLost}));
+  EXPECT_EQ(air.Outcomes(), (std::vector{Outcome::kStopped, Outcome::kLeft, Outcome::kStopped}));
 }
 
 TEST(Sessions, RobotsOfAnotherChoreographyAreNoneOfThem) {

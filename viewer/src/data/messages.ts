@@ -34,11 +34,16 @@ function header(cdr: Cdr): void {
   cdr.text();
 }
 
+// Where nothing can be is no place: the message counts as damaged.
+const FAR = 1e9;
+
 function pose(cdr: Cdr): Pose {
-  return {
+  const made: Pose = {
     position: [cdr.f64(), cdr.f64(), cdr.f64()],
     rotation: [cdr.f64(), cdr.f64(), cdr.f64(), cdr.f64()],
   };
+  if (![...made.position, ...made.rotation].every((v) => Math.abs(v) < FAR)) throw new RangeError("no place");
+  return made;
 }
 
 /** geometry_msgs/PoseStamped */

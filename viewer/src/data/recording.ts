@@ -183,11 +183,12 @@ class Reader {
     if (did === "begins" || did === "ends") return this.event(time, { kind: did, robot: json["robot"], motion: json["what"] });
     if (did === "took") return this.event(time, { kind: "message", from: json["peer"], to: json["robot"], label: json["what"], values: json["values"] });
     const place = json["round"] === undefined ? "" : `epoch ${string(json["epoch"])}, round ${string(json["round"])}`;
-    const words = [place, string(json["what"]), string(json["peer"]) && `with ${string(json["peer"])}`, string(json["said"])];
+    const gaveUp = did === "leaves" && ["failed", "lost"].includes(string(json["outcome"]));
+    const words = [place, string(json["outcome"]), string(json["what"]), string(json["peer"]) && `with ${string(json["peer"])}`, string(json["said"])];
     const findings = Array.isArray(this.recording.run["findings"]) ? this.recording.run["findings"].map(object) : [];
     for (const finding of findings.filter((f) => f["line"] === this.lines - 1))
       this.recording.happenings.push({ time, kind: string(finding["wrong"]), robots: [robot], text: string(finding["text"]), bad: true });
-    this.recording.happenings.push({ time, kind: did, robots: [robot], text: words.filter((w) => w !== "").join(", "), bad: did === "breaks" });
+    this.recording.happenings.push({ time, kind: did, robots: [robot], text: words.filter((w) => w !== "").join(", "), bad: did === "breaks" || gaveUp });
     if (place !== "") this.recording.spans.push({ robot, text: `${did} ${place}`, from: time, to: time });
     if (typeof json["state"] === "object") this.recording.states.push({ time, label: `${this.recording.robots[robot]?.name ?? ""}: ${place}`, state: object(json["state"]) });
   }
