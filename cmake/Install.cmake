@@ -6,18 +6,21 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(data ${CMAKE_INSTALL_DATADIR}/rondo)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/rondo)
+# Three components, each a package of its own (cmake/Package.cmake): the program, what is compiled against, documents.
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME rondo)
 install(TARGETS rondo EXPORT rondo-targets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS rondo_adapter_header rondo_program_headers EXPORT rondo-targets)
-install(FILES src/adapter/adapter.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rondo)
-install(DIRECTORY src/program DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rondo FILES_MATCHING PATTERN "*.h")
+install(FILES src/adapter/adapter.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rondo COMPONENT dev)
+install(DIRECTORY src/program DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rondo COMPONENT dev FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY models examples DESTINATION ${data})
-install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.svg")
-install(EXPORT rondo-targets NAMESPACE rondo:: DESTINATION ${package})
+install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.png" PATTERN "schema/*.json")
+install(EXPORT rondo-targets NAMESPACE rondo:: DESTINATION ${package} COMPONENT dev)
 configure_package_config_file(cmake/rondoConfig.cmake.in ${CMAKE_BINARY_DIR}/rondoConfig.cmake INSTALL_DESTINATION ${package}
   PATH_VARS data)
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/rondoConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${CMAKE_BINARY_DIR}/rondoConfig.cmake ${CMAKE_BINARY_DIR}/rondoConfigVersion.cmake DESTINATION ${package})
+install(FILES ${CMAKE_BINARY_DIR}/rondoConfig.cmake ${CMAKE_BINARY_DIR}/rondoConfigVersion.cmake DESTINATION ${package} COMPONENT dev)
 
 # What the program says of itself: manual pages, and completion for three shells.
 install(CODE "
@@ -29,4 +32,5 @@ install(CODE "
     string(REGEX REPLACE \"^[a-z]+:\" \"\" path \${file})
     execute_process(COMMAND \${rondo} completion \${shell} OUTPUT_VARIABLE script COMMAND_ERROR_IS_FATAL ANY)
     file(WRITE \${share}/\${path} \"\${script}\")
-  endforeach()")
+  endforeach()" COMPONENT rondo)
+include(cmake/Package.cmake)

@@ -147,7 +147,7 @@ void Player::Ends(const MotionRun& motion) {
 }
 
 // A body is late, and has to be where the next motion may begin. One that is far away will not come.
-Progress Player::Look(const MotionRun& motion, Progress progress) {
+Progress Player::Checked(const MotionRun& motion, Progress progress) {
   const double away = Away(wanted_.values()), astray = Astray();
   if (progress == Progress::kFailed) {
     trouble_ = motion.lost();

@@ -60,8 +60,8 @@ class Player final : private sim::motions::Audience {
   void Takes(choreo::RobotId robot, const runtime::sessions::Expected& message,
              const std::vector<double>& values) override;
   void Sends(choreo::RobotId robot, const runtime::sessions::Step& message) override;
-  runtime::sessions::Progress Look(const sim::motions::MotionRun& motion,
-                                   runtime::sessions::Progress progress) override;
+  runtime::sessions::Progress Checked(const sim::motions::MotionRun& motion,
+                                      runtime::sessions::Progress progress) override;
 
   void Watch(sim::motions::Condition& condition, double clock);
   /// Does so for a body that may be a moment behind.

@@ -60,7 +60,8 @@ TEST(Wire, ReadsWhatItWrote) {
     ASSERT_EQ(Decode(bytes, kAgreement, kSession, kRobots, back), Refused::kNothing);
     EXPECT_EQ(back.sender, d.sender);
     EXPECT_EQ(BytesOf(back), bytes);
-    if (const auto* alive = std::get_if<Alive>(&d.body)) EXPECT_EQ(std::get<Alive>(back.body), *alive);
+    const auto* alive = std::get_if<Alive>(&d.body);
+    EXPECT_TRUE(alive == nullptr || std::get<Alive>(back.body) == *alive);
   }
 }
 
@@ -97,8 +98,8 @@ TEST(Wire, NoBytesHurtIt) {
       codec::Writer(sum).Fixed(codec::Sum(codec::View(bytes).subspan(8)));
       std::ranges::copy(sum, bytes.begin());
     }
-    if (Decode(bytes, kAgreement, kSession, kRobots, back) == Refused::kNothing)
-      EXPECT_EQ(BytesOf(back), bytes);
+    const Refused refused = Decode(bytes, kAgreement, kSession, kRobots, back);
+    EXPECT_TRUE(refused != Refused::kNothing || BytesOf(back) == bytes);
   }
 }
 

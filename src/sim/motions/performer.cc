@@ -56,7 +56,7 @@ void Performer::Begin(size_t motion) {
 
 Progress Performer::Tick() {
   if (!motion_) return problem_.empty() ? Progress::kStopped : Progress::kFailed;
-  const Progress progress = audience_.Look(*motion_, motion_->progress());
+  const Progress progress = audience_.Checked(*motion_, motion_->progress());
   if (progress == Progress::kStopped) Halt();
   return progress;
 }

@@ -34,8 +34,8 @@ class Audience {
   /// A message was taken by whom it is for.
   virtual void Sends(choreo::RobotId /*robot*/, const runtime::sessions::Step& /*message*/) {}
   /// Returns how far a motion is, which is as far as it should be if the body follows.
-  virtual runtime::sessions::Progress Look(const MotionRun& /*motion*/,
-                                           runtime::sessions::Progress progress) {
+  virtual runtime::sessions::Progress Checked(const MotionRun& /*motion*/,
+                                              runtime::sessions::Progress progress) {
     return progress;
   }
   /// A message is consumed.
