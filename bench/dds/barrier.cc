@@ -4,8 +4,6 @@
 //
 //   barrier ROBOTS SELF ROUNDS PERIOD_US BYTES LOST     prints the microseconds of each round; LOST: packets of a thousand
 
-#include <dds/dds.h>
-
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -13,12 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "dds/network.h"
-#include "dds/raw_type.h"
+#include "ends.h"
 
 namespace {
 
-using rondo::dds::CreateRawTopic;
 using rondo::dds::TakeRaw;
 
 int64_t Now() {
@@ -32,31 +28,20 @@ struct Word {
   uint32_t robot = 0, round = 0, phase = 0;
 };
 
+rondo::dds::Network NetworkOf(uint32_t lost) {
+  rondo::dds::Network network;
+  network.domain = static_cast<uint32_t>(std::atoi(std::getenv("ROS_DOMAIN_ID")));
+  network.lost_in_thousand = lost;
+  return network;
+}
+
 class Barrier {
  public:
   Barrier(uint32_t robots, uint32_t self, size_t bytes, uint32_t lost)
-      : self_(self), seen_(robots), text_(sizeof(Word) + bytes, 'x') {
-    const std::string configuration = rondo::dds::Configuration({.lost_in_thousand = lost});
-    const auto domain = static_cast<dds_domainid_t>(std::atoi(std::getenv("ROS_DOMAIN_ID")));
-    dds_create_domain(domain, configuration.c_str());
-    const dds_entity_t participant = dds_create_participant(domain, nullptr, nullptr);
-    const dds_entity_t topic = CreateRawTopic(participant, "barrier", "Barrier", nullptr);
-    dds_qos_t* qos = dds_create_qos();
-    dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
-    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 256);
-    dds_qset_ignorelocal(qos, DDS_IGNORELOCAL_PARTICIPANT);
-    reader_ = dds_create_reader(participant, topic, qos, nullptr);
-    writer_ = dds_create_writer(participant, topic, qos, nullptr);
-    dds_delete_qos(qos);
-    waitset_ = dds_create_waitset(participant);
-    dds_waitset_attach(waitset_, dds_create_readcondition(reader_, DDS_ANY_STATE), 0);
-    dds_publication_matched_status_t status{};
-    do {
-      const timespec nap{0, 10'000'000};
-      ::nanosleep(&nap, nullptr);
-      dds_get_publication_matched_status(writer_, &status);
-    } while (status.current_count + 1 < robots);
-  }
+      : self_(self),
+        seen_(robots),
+        text_(sizeof(Word) + bytes, 'x'),
+        ends_(NetworkOf(lost), "barrier", robots - 1) {}
 
   // Returns when all others are there.
   void Pass(uint32_t round, uint32_t phase) {
@@ -65,7 +50,7 @@ class Barrier {
     Write(round, phase);
     while (!All(mine)) {
       dds_attach_t what;
-      if (dds_waitset_wait(waitset_, &what, 1, DDS_MSECS(1)) == 0) Write(round, phase);
+      if (dds_waitset_wait(ends_.waitset, &what, 1, DDS_MSECS(1)) == 0) Write(round, phase);
       Take(round, phase);
     }
   }
@@ -75,11 +60,11 @@ class Barrier {
     const Word word{0x0100, self_, round, phase};
     std::memcpy(text_.data(), &word, sizeof(word));
     const std::string_view view = text_;
-    dds_write(writer_, &view);
+    dds_write(ends_.writer, &view);
   }
   void Take(uint32_t, uint32_t) {
     dds_sample_info_t info;
-    while (TakeRaw(reader_, bytes_, info)) {
+    while (TakeRaw(ends_.reader, bytes_, info)) {
       if (!info.valid_data || bytes_.size() < sizeof(Word)) continue;
       Word word;
       std::memcpy(&word, bytes_.data(), sizeof(word));
@@ -98,7 +83,7 @@ class Barrier {
   uint32_t self_;
   std::vector<uint64_t> seen_;
   std::string text_, bytes_;
-  dds_entity_t reader_ = 0, writer_ = 0, waitset_ = 0;
+  bench::Ends ends_;
 };
 
 }  // namespace

@@ -3,18 +3,14 @@
 //
 //   messages rondo|hand SELF COUNT RESEND_US LOST     SELF: 0 sends, 1 answers; 0 prints the microseconds of each. LOST: packets of a thousand
 
-#include <dds/dds.h>
-
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
 #include <string>
 #include <vector>
 
-#include "dds/network.h"
 #include "dds/participant.h"
-#include "dds/raw_type.h"
+#include "ends.h"
 #include "transport/dds/way.h"
 #include "transport/mailbox.h"
 #include "transport/sessions.h"
@@ -91,28 +87,7 @@ int Rondo(Arguments& a) {
 /// Writes a number until the other one says it, too.
 class Hand {
  public:
-  explicit Hand(const Arguments& a) : a_(a) {
-    const rondo::dds::Network network = NetworkOf(a);
-    const std::string configuration = rondo::dds::Configuration(network);
-    dds_create_domain(network.domain, configuration.c_str());
-    const dds_entity_t participant = dds_create_participant(network.domain, nullptr, nullptr);
-    const dds_entity_t topic = rondo::dds::CreateRawTopic(participant, "ping", "Ping", nullptr);
-    dds_qos_t* qos = dds_create_qos();
-    dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
-    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 256);
-    dds_qset_ignorelocal(qos, DDS_IGNORELOCAL_PARTICIPANT);
-    reader_ = dds_create_reader(participant, topic, qos, nullptr);
-    writer_ = dds_create_writer(participant, topic, qos, nullptr);
-    dds_delete_qos(qos);
-    waitset_ = dds_create_waitset(participant);
-    dds_waitset_attach(waitset_, dds_create_readcondition(reader_, DDS_ANY_STATE), 0);
-    dds_publication_matched_status_t status{};
-    do {
-      const timespec nap{0, 10'000'000};
-      ::nanosleep(&nap, nullptr);
-      dds_get_publication_matched_status(writer_, &status);
-    } while (status.current_count == 0);
-  }
+  explicit Hand(const Arguments& a) : a_(a), ends_(NetworkOf(a), "ping", 1) {}
 
   void Ping(uint32_t number) {
     Write(number);
@@ -133,7 +108,7 @@ class Hand {
  private:
   bool Wait(int64_t most) {
     dds_attach_t what;
-    return dds_waitset_wait(waitset_, &what, 1, most) > 0;
+    return dds_waitset_wait(ends_.waitset, &what, 1, most) > 0;
   }
   void Write(uint32_t number) {
     text_.assign(40, 'x');
@@ -141,11 +116,11 @@ class Hand {
     std::memcpy(text_.data(), &encoding, 4);
     std::memcpy(text_.data() + 4, &number, 4);
     const std::string_view view = text_;
-    dds_write(writer_, &view);
+    dds_write(ends_.writer, &view);
   }
   void Take(bool answers) {
     dds_sample_info_t info;
-    while (rondo::dds::TakeRaw(reader_, bytes_, info)) {
+    while (rondo::dds::TakeRaw(ends_.reader, bytes_, info)) {
       if (!info.valid_data || bytes_.size() < 8) continue;
       uint32_t number = 0;
       std::memcpy(&number, bytes_.data() + 4, 4);
@@ -157,7 +132,7 @@ class Hand {
   const Arguments& a_;
   std::string text_, bytes_;
   uint32_t seen_ = 0;
-  dds_entity_t reader_ = 0, writer_ = 0, waitset_ = 0;
+  bench::Ends ends_;
 };
 
 int ByHand(Arguments& a) {

@@ -1,6 +1,7 @@
 #include "base/file.h"
 
 #include <fmt/format.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 #include <array>
@@ -35,6 +36,14 @@ Result<bool> MakeFolders(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, failure);
   if (failure) return Error{failure.message()};
   return true;
+}
+
+Result<std::string> MakeTemporaryFolder() {
+  std::error_code wrong;
+  std::string folder =
+      (std::filesystem::temp_directory_path(wrong) / "rondo-").string() + std::string(6, 'X');
+  if (::mkdtemp(folder.data()) == nullptr) return Error{std::strerror(errno)};
+  return folder;
 }
 
 Result<bool> WriteFileAtomically(const std::filesystem::path& path, std::string_view text) {

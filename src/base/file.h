@@ -16,6 +16,9 @@ Result<std::string> ReadFile(const std::filesystem::path& path, uint64_t largest
 /// Makes a folder, and those that it lies in, unless they are there. @error in the words of the system.
 Result<bool> MakeFolders(const std::filesystem::path& folder);
 
+/// Makes a folder for things that stay a while, with a name that nothing else has. @error in the words of the system.
+Result<std::string> MakeTemporaryFolder();
+
 /// Writes all of `text` or nothing: a temporary file beside `path` is renamed over it.
 ///
 /// @error when the file cannot be written, or its folder is not there; a file that was there before is then unchanged.

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "base/file.h"
+#include "deploy/announcer.h"
 #include "deploy/clocked_way.h"
 #include "deploy/echo.h"
 #include "deploy/log_name.h"
@@ -16,7 +17,6 @@
 #include "platform/ports.h"
 #include "platform/senses.h"
 #include "ros/names.h"
-#include "ros/rcl_interfaces.h"
 #include "runtime/durable/file_disk.h"
 #include "transport/dds/way.h"
 #include "transport/mailbox.h"
@@ -48,7 +48,8 @@ class RobotProcess {
         diagnostics_(diagnostics),
         self_(options.robot),
         name_(fleet.robots[self_].name),
-        clock_(fleet.ros.use_sim_time) {}
+        clock_(fleet.ros.use_sim_time),
+        announcer_(fleet.robots[self_].node_namespace, options.tell) {}
 
   base::Result<bool> Prepare() {
     const size_t before = diagnostics_.errors();
@@ -76,9 +77,7 @@ class RobotProcess {
                                              ros::diagnostic_msgs::DiagnosticArray::kMessage, ros::kDefault);
     if (!diagnostics.ok()) return diagnostics.error();
     status_ = std::move(diagnostics).value();
-    auto rosout = participant_->Publish(node_, "/rosout", ros::rcl_interfaces::Log::kMessage, ros::kLog);
-    if (!rosout.ok()) return rosout.error();
-    rosout_ = std::move(rosout).value();
+    if (auto begun = announcer_.Begin(*participant_, node_); !begun.ok()) return begun;
     if (auto echoes = Echo(); !echoes.ok()) return echoes;
     std::vector<std::string> names;
     for (const sim::FleetRobot& robot : fleet_.robots) names.push_back(robot.name);
@@ -111,6 +110,7 @@ class RobotProcess {
   base::Result<bool> Finish() { return log_ == nullptr ? base::Result<bool>(true) : log_->Finish(); }
 
  private:
+  using Level = Announcer::Level;
   static base::Error Reported() { return {}; }
   std::unique_ptr<Replica> Make(PlannerThread* planner) {
     return Replica::Make(model_, fleet_, ports_, self_, options_.seed, planner, diagnostics_);
@@ -161,15 +161,7 @@ class RobotProcess {
     return true;
   }
 
-  void Tell(const std::string& text, uint8_t level = 20) {
-    ros::rcl_interfaces::Log m;
-    m.stamp = platform::StampOf(clock_.Stamp());
-    m.level = level;
-    m.name = fleet_.robots[self_].node_namespace + ".rondo";
-    m.msg = text;
-    (void)rosout_->Publish(m).ok();
-    if (options_.tell) options_.tell(text);
-  }
+  void Tell(const std::string& text, Level level) { announcer_.Tell(text, level, clock_.Stamp()); }
 
   // Nobody can run `init` without knowing where it is.
   bool WaitForSensors() {
@@ -178,7 +170,7 @@ class RobotProcess {
       if (options_.stop.StopRequested()) return false;
       const std::string why = senses_->Unusable();
       if (why.empty()) return true;
-      if (i % 20 == 10 && why != last) Tell("waiting: " + (last = why), 30);
+      if (i % 20 == 10 && why != last) Tell("waiting: " + (last = why), Level::kWarning);
       if (i % 10 == 0) Publish(why, nullptr);
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
@@ -197,12 +189,13 @@ class RobotProcess {
         const std::string still = ClockNews();
         const std::string why = still.empty() ? senses_->Unusable() : still;
         Publish(why, &view);
-        if (blind != !why.empty()) Tell(why.empty() ? "the sensors are usable again" : "skips: " + why, 30);
+        if (blind != !why.empty())
+          Tell(why.empty() ? "the sensors are usable again" : "skips: " + why, Level::kWarning);
         blind = !why.empty();
-        if (!view.begun_at && seconds++ % 10 == 2) Tell(Awaited(view), 30);
+        if (!view.begun_at && seconds++ % 10 == 2) Tell(Awaited(view), Level::kWarning);
       }
-      for (const auto& [text, level] : rounds_->TakeNews()) Tell(text, level);
-      if (const std::string problem = orders_->TakeProblem(); !problem.empty()) Tell(problem, 40);
+      for (const auto& [text, level] : rounds_->TakeNews()) Tell(text, static_cast<Level>(level));
+      if (const std::string problem = orders_->TakeProblem(); !problem.empty()) Tell(problem, Level::kError);
       if (ending) return *ending;
     }
   }
@@ -211,7 +204,7 @@ class RobotProcess {
   std::string ClockNews() {
     if (!clock_.simulated()) return {};
     if (const uint64_t back = clock_.set_back(); std::exchange(set_back_, back) != back)
-      Tell("/clock was set back: is there more than one who sends it?", 30);
+      Tell("/clock was set back: is there more than one who sends it?", Level::kWarning);
     const Time now = clock_.Now(), here = transport::BootTime();
     if (std::exchange(clock_stood_at_, now) != now) clock_moved_ = here;
     const double still = Seconds(here - clock_moved_);
@@ -289,7 +282,8 @@ class RobotProcess {
   platform::Clock clock_;
   std::unique_ptr<platform::Senses> senses_;
   std::unique_ptr<platform::Orders> orders_;
-  std::unique_ptr<dds::Publisher> status_, rosout_;
+  std::unique_ptr<dds::Publisher> status_;
+  Announcer announcer_;
   std::unique_ptr<dds::Publisher> echo_answers_;
   std::unique_ptr<dds::Subscription> echo_questions_;
   std::unique_ptr<transport::Transport> way_;

@@ -9,6 +9,9 @@
 /// Carries out `rondo run`, `rondo launch` and `rondo replay` for robots of choreographies.
 namespace rondo::driver {
 
+/// Is how late motions may be until that is told, in seconds: bodies always lag a little.
+inline constexpr double kTellLate = 0.05;
+
 /// Says how a robot of a choreography is run.
 struct RunChoreographyOptions {
   runs::ChoreographyFiles files;

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/counted.h"
+#include "base/file.h"
 #include "driver/choreography_robots.h"
 #include "driver/terminal.h"
 
@@ -35,6 +35,8 @@ std::string TextOf(const deploy::SessionsReport& judged) {
                                                      miss.robot, miss.motion, miss.missed)
                                        : fmt::format("  `{}: {}`: its contract has no value where it was\n",
                                                      miss.robot, miss.motion);
+  if (judged.late > kTellLate)
+    text += fmt::format("  motions took up to {:.2f} s longer than they may\n", judged.late);
   if (judged.broken.empty() && judged.worst.missed > 0)
     text += fmt::format("  contracts kept up to {:.2g} (SI units), as sensors tell: `{}: {}` missed most\n",
                         judged.worst.missed, judged.worst.robot, judged.worst.motion);
@@ -54,7 +56,8 @@ json JsonOf(const deploy::SessionsReport& judged) {
           {"gaps", judged.gaps},
           {"ends", ends},
           {"broken", broken},
-          {"missed", Finite(judged.worst.missed)}};
+          {"missed", Finite(judged.worst.missed)},
+          {"late", judged.late}};
 }
 
 // Whether robots were stopped is for whoever judges to say.
@@ -172,9 +175,10 @@ ExitStatus LaunchChoreography(LaunchedChoreographyOptions options) {
   launch.executable = fs::read_symlink("/proc/self/exe").string();
   const bool wanted = !launch.logs.empty();
   if (!wanted) {
-    std::string folder = (fs::temp_directory_path() / "rondo-XXXXXX").string();
-    if (::mkdtemp(folder.data()) == nullptr) return fail("cannot make a folder for the logs");
-    launch.logs = folder;
+    const auto folder = base::MakeTemporaryFolder();
+    if (!folder.ok())
+      return fail(fmt::format("cannot make a folder for the logs: {}", folder.error().message));
+    launch.logs = folder.value();
   }
   base::Result<runs::LaunchChoreographyReport> ran = base::Error{};
   {

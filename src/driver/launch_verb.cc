@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <cmath>
 #include <filesystem>
@@ -203,10 +202,11 @@ ExitStatus Run(const Options& options) {
     launch.trace = &*writer;
   }
   if (launch.logs.empty()) {
-    std::string folder = (fs::temp_directory_path() / "rondo-XXXXXX").string();
-    if (::mkdtemp(folder.data()) == nullptr)
-      return Fail(options, session, "cannot make a folder for the logs");
-    launch.logs = folder;
+    const auto folder = base::MakeTemporaryFolder();
+    if (!folder.ok())
+      return Fail(options, session,
+                  fmt::format("cannot make a folder for the logs: {}", folder.error().message));
+    launch.logs = folder.value();
   }
   base::Result<runs::LaunchReport> ran = base::Error{};
   {

@@ -1,7 +1,6 @@
 #include "driver/page.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -73,12 +72,10 @@ bool OpenInBrowser(const std::string& path) {
 }
 
 std::string PlaceForTrace() {
-  std::string folder = (fs::temp_directory_path() / "rondo-XXXXXX").string();
-  if (::mkdtemp(folder.data()) == nullptr) {
-    PrintFailure("cannot make a folder for the trace");
-    return "";
-  }
-  return (fs::path(folder) / "run.mcap").string();
+  const auto folder = base::MakeTemporaryFolder();
+  if (folder.ok()) return (fs::path(folder.value()) / "run.mcap").string();
+  PrintFailure(fmt::format("cannot make a folder for the trace: {}", folder.error().message));
+  return "";
 }
 
 void ShowTrace(const std::string& trace, bool json) {

@@ -29,6 +29,8 @@ std::string Tell(const deploy::PlayerReport& report) {
   if (report.missed > 0)
     text += fmt::format("  contracts kept up to {:.2g} (SI units): `{}` missed most\n", report.missed,
                         report.missed_by);
+  if (report.late > kTellLate)
+    text += fmt::format("  motions took up to {:.2f} s longer than they may\n", report.late);
   if (report.broken > 0)
     text += fmt::format("  {} missed theirs by more than `--tolerance`\n",
                         base::Counted(report.broken, "motion"));
@@ -104,7 +106,8 @@ ExitStatus RunChoreography(const RunChoreographyOptions& options) {
          {"missed",
           {{"most", std::isfinite(report.missed) ? nlohmann::json(report.missed) : nlohmann::json(nullptr)},
            {"motion", report.missed_by},
-           {"broken", report.broken}}},
+           {"broken", report.broken},
+           {"late", report.late}}},
          {"log", report.log},
          {"status", status},
          {"diagnostics", diag::RenderJson(session.sources, session.diagnostics)}});

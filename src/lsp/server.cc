@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <set>
 
 #include "base/version.h"
 #include "diag/render.h"
@@ -49,6 +51,16 @@ bool Meet(const json& a, const json& b) {
 }
 
 int SeverityOf(std::string_view severity) { return severity == "error" ? 1 : severity == "warning" ? 2 : 3; }
+
+bool InWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+// The bytes of the word around a place.
+std::pair<size_t, size_t> WordAround(std::string_view text, size_t at) {
+  size_t begin = at, end = at;
+  while (begin > 0 && InWord(text[begin - 1])) --begin;
+  while (end < text.size() && InWord(text[end])) ++end;
+  return {begin, end};
+}
 
 // What stands below a message, on lines of its own.
 std::string WithMore(std::string message, const std::vector<std::string>& notes,
@@ -119,6 +131,8 @@ void Server::Request(const json& id, const std::string& method, const json& para
   if (method == "textDocument/documentSymbol") return Answer(id, Symbols(parameters));
   if (method == "textDocument/codeAction") return Answer(id, Actions(parameters));
   if (method == "textDocument/hover") return Answer(id, Hover(parameters));
+  if (method == "textDocument/definition") return Answer(id, Definition(parameters));
+  if (method == "textDocument/completion") return Answer(id, Complete(parameters));
   Refuse(id, kMethodNotFound, fmt::format("`{}` is not known", method));
 }
 
@@ -147,6 +161,8 @@ json Server::Initialize(const json& parameters) {
             {"documentFormattingProvider", true},
             {"documentSymbolProvider", true},
             {"codeActionProvider", {{"codeActionKinds", {"quickfix"}}}},
+            {"definitionProvider", true},
+            {"completionProvider", json::object()},
             {"hoverProvider", true}}},
           {"serverInfo", {{"name", "rondo"}, {"version", std::string(base::Version())}}}};
 }
@@ -500,6 +516,49 @@ json Server::Hover(const json& parameters) {
   }
   if (text.empty()) return nullptr;
   return {{"contents", {{"kind", "markdown"}, {"value", text}}}};
+}
+
+// What a name means that a file declares, or one that belongs to it. Names within bodies are not looked for.
+json Server::Definition(const json& parameters) {
+  const Document* document = Find(parameters);
+  if (document == nullptr || !IsSource(document->path)) return json::array();
+  const size_t at = OffsetOf(document->text, PositionIn(parameters.at("position")), encoding_);
+  const auto [begin, end] = WordAround(document->text, at);
+  const std::string word = document->text.substr(begin, end - begin);
+  // Everything that belongs together is read by a check.
+  workspace::Session whole;
+  Prepare(whole);
+  workspace::CheckFile(RootOf(document->path), whole);
+  json found = json::array();
+  for (size_t f = 0; f < whole.sources.size() && !word.empty(); ++f) {
+    const std::string path(whole.sources.path(diag::FileId(f)));
+    workspace::Session session;
+    Prepare(session);
+    for (const Symbol& s : OutlineOf(path, session)) {
+      if (s.name == word) found.push_back({{"uri", UriOf(Plain(path))}, {"range", RangeOf(session, s.span)}});
+    }
+  }
+  return found;
+}
+
+// The words of the file, but the one that is being written.
+json Server::Complete(const json& parameters) {
+  constexpr size_t kMost = 2000;
+  const Document* document = Find(parameters);
+  if (document == nullptr || !IsSource(document->path)) return json::array();
+  const std::string& text = document->text;
+  const size_t here =
+      WordAround(text, OffsetOf(text, PositionIn(parameters.at("position")), encoding_)).first;
+  std::set<std::string> words;
+  for (size_t at = 0; at < text.size() && words.size() < kMost;) {
+    const auto [begin, end] = WordAround(text, at);
+    const bool name = end > begin + 1 && std::isdigit(static_cast<unsigned char>(text[begin])) == 0;
+    if (name && begin != here) words.insert(text.substr(begin, end - begin));
+    at = std::max(end, at) + 1;
+  }
+  json items = json::array();
+  for (const std::string& word : words) items.push_back({{"label", word}, {"kind", 1}});
+  return items;
 }
 
 }  // namespace rondo::lsp

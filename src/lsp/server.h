@@ -64,6 +64,8 @@ class Server {
   Json Symbols(const Json& parameters);
   Json Actions(const Json& parameters);
   Json Hover(const Json& parameters);
+  Json Definition(const Json& parameters);
+  Json Complete(const Json& parameters);
 
   /// Returns which file is checked when this one changes: the program of a specification.
   std::string RootOf(const std::string& path) const;

@@ -137,6 +137,12 @@ def typing(folder):
     symbols = editor.ask("textDocument/documentSymbol", {"textDocument": {"uri": path.as_uri()}})
     names = {s["name"] for s in symbols}
     check("symbols", {"TargetUpdate", "geofence", "Motion", "x"} <= names, names)
+    at = place(LINEFORM, "x[pid] = Motion")["start"]
+    editor.change(path, 5, {"text": LINEFORM})
+    found = editor.ask("textDocument/definition", {"textDocument": {"uri": path.as_uri()}, "position": at})
+    check("where a name is defined", [d["uri"] for d in found] == [path.as_uri()] and found[0]["range"]["start"]["line"] < at["line"], found)
+    words = {i["label"] for i in editor.ask("textDocument/completion", {"textDocument": {"uri": path.as_uri()}, "position": at})}
+    check("words", {"TargetUpdate", "Motion", "invariant"} <= words, words)
     check("no such method", editor.ask("textDocument/nonsense", {}).get("code") == -32601)
     check("parameters that are none", editor.ask("textDocument/hover", {"textDocument": 3}).get("code") == -32602)
     check("a file that nobody opened", editor.ask("textDocument/hover", {"textDocument": {"uri": "file:///none.koord"}, "position": {"line": 0, "character": 0}}) is None)
@@ -160,6 +166,8 @@ def files(folder):
     found = editor.diagnostics(spec.as_uri(), 1)
     check("an error in the specification", any(d["severity"] == 1 for d in found), found)
     editor.change(spec, 2, {"text": promise})
+    found = editor.ask("textDocument/definition", {"textDocument": {"uri": spec.as_uri()}, "position": place(promise, "shared_paths")["start"]})
+    check("defined in the program", [d["uri"] for d in found] == [program.as_uri()], found)
     check("mended", all(d["severity"] > 1 for d in editor.diagnostics(spec.as_uri(), 2)))
     motion, model = folder / "w.rondo", folder / "m.rondo"
     model.write_text("robot R { state x: length in [0 m, 1 m]  motion Idle() interruptible [0, inf) {} }\n")

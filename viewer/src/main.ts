@@ -44,10 +44,18 @@ function open(name: string, bytes: Uint8Array): void {
     ...problems, main, timeline(state), dialog);
   const screens = new Map<Screen, HTMLElement>();
   let shown: Screen | null = null;
+  let noted = false;
   state.onChange(() => {
     const { screen } = state.look;
     tabs.forEach((tab, i) => (SCREENS[i] === screen ? tab.setAttribute("aria-current", "page") : tab.removeAttribute("aria-current")));
-    history.replaceState(null, "", state.toHash());
+    if (!noted) {
+      // Browsers slow down whoever writes the address all the time.
+      noted = true;
+      setTimeout(() => {
+        noted = false;
+        history.replaceState(null, "", state.toHash());
+      }, 100);
+    }
     if (screen === shown) return;
     shown = screen;
     if (!screens.has(screen)) {
@@ -64,7 +72,7 @@ function open(name: string, bytes: Uint8Array): void {
   // A run without any place is looked at as a story.
   if (location.hash === "" && recording.bodies.length === 0 && recording.robots.every((robot) => robot.pose.times.length === 0)) state.change({ screen: "story" });
   run(state);
-  Object.assign(window, { rondo: { state } }); // for tests, and for whoever is curious
+  Object.assign(window, { rondo: { ...(window as { rondo?: object }).rondo, state } }); // for tests, and for whoever is curious
 }
 
 /** Lets time pass while it plays. */

@@ -39,6 +39,7 @@ async function screens(file, name, scheme, size) {
     await page.keyboard.press(String(i + 1));
     assert.equal((await look(page)).screen, screen);
     await page.waitForTimeout(150);
+    if (screen === "run") assert.ok((await page.evaluate(() => window.rondo.stage.drawCalls())) <= 40, `${name}: draw calls`);
     // The page's own rules let no script in: axe is run from outside of them.
     const found = await page.evaluate(`${axe}; axe.run()`).then((r) => r.violations);
     assert.deepEqual(found.map((v) => `${screen}: ${v.id}: ${v.nodes.length} x ${v.nodes[0].html.slice(0, 120)}`), [], `${name} ${scheme}`);
@@ -70,6 +71,7 @@ async function keys(file) {
   await page.keyboard.press("f");
   await page.keyboard.press("t");
   assert.deepEqual([(await look(page)).follow, (await look(page)).from], [true, "top"]);
+  await page.waitForTimeout(200);
   // The address has everything: somebody else who opens it sees the same.
   const address = page.url();
   const other = await context.newPage();

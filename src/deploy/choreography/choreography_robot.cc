@@ -6,11 +6,11 @@
 #include <chrono>
 #include <thread>
 
+#include "deploy/announcer.h"
 #include "deploy/choreography/session_log.h"
 #include "deploy/log_name.h"
 #include "platform/topics.h"
 #include "ros/names.h"
-#include "ros/rcl_interfaces.h"
 #include "transport/dds/way.h"
 #include "transport/mailbox.h"
 #include "transport/sessions.h"
@@ -85,10 +85,8 @@ class PlayerProcess {
     auto said = participant_->Publish(node, events, ros::std_msgs::String::kMessage, {.depth = 1000});
     if (!said.ok()) return said.error();
     events_ = std::move(said).value();
-    auto rosout = participant_->Publish(node, "/rosout", ros::rcl_interfaces::Log::kMessage, ros::kLog);
-    if (!rosout.ok()) return rosout.error();
-    rosout_ = std::move(rosout).value();
-    logger_ = space.substr(1) + ".rondo";
+    announcer_.emplace(space.substr(1), options_.tell);
+    if (auto begun = announcer_->Begin(*participant_, node); !begun.ok()) return begun;
     std::vector<std::string> names;
     for (const choreo::Name& robot : cast_.graph->robots) names.push_back(ros::Plain(robot.text));
     auto way = transport::dds::Connect(*participant_, node,
@@ -109,16 +107,6 @@ class PlayerProcess {
     if (log_ != nullptr) log_->Put(event);
   }
 
-  void Tell(const std::string& text, uint8_t level) {
-    ros::rcl_interfaces::Log m;
-    m.stamp = platform::StampOf(platform::WallTime());
-    m.level = level;
-    m.name = logger_;
-    m.msg = text;
-    (void)rosout_->Publish(m).ok();
-    if (options_.tell) options_.tell(text);
-  }
-
   // A person, and whoever listens: once for each reason, and neither for a moment's wait nor all the time.
   void Waits(const std::string& why, int64_t since) {
     constexpr double kMoment = 0.5, kAgain = 2;
@@ -126,7 +114,7 @@ class PlayerProcess {
     if (why == waited_for_ || Seconds(now - since) < kMoment || Seconds(now - told_) < kAgain) return;
     waited_for_ = why;
     told_ = now;
-    Tell("waiting: " + why, 30);
+    announcer_->Tell("waiting: " + why, Announcer::Level::kWarning, platform::WallTime());
     SessionEvent event;
     event.did = Did::kWaits;
     event.what = why;
@@ -193,6 +181,7 @@ class PlayerProcess {
     report_.motions = player_->motions_made();
     report_.missed = player_->missed();
     report_.missed_by = player_->missed_by();
+    report_.late = player_->late();
     report_.broken = player_->broken();
   }
 
@@ -209,8 +198,8 @@ class PlayerProcess {
   const PlayerOptions& options_;
   const std::string name_;
   std::unique_ptr<dds::Participant> participant_;
-  std::unique_ptr<dds::Publisher> events_, rosout_;
-  std::string logger_;
+  std::unique_ptr<dds::Publisher> events_;
+  std::optional<Announcer> announcer_;
   std::optional<platform::StateOrders> orders_;
   std::optional<platform::StateSenses> senses_;
   std::unique_ptr<transport::Transport> way_;

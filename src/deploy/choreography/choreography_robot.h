@@ -43,6 +43,7 @@ struct PlayerReport {
   uint64_t messages = 0, motions = 0;
   double missed = 0;      ///< by how much contracts were missed, at most, as its sensors tell (SI units)
   std::string missed_by;  ///< which motion missed it
+  double late = 0;        ///< seconds by which motions took longer than they may, at most
   uint64_t broken = 0;    ///< motions that missed theirs by more than the tolerance
   std::string log;        ///< the file of its log; another one than asked for if there was one
 };

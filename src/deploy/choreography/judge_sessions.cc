@@ -74,6 +74,7 @@ class Judge {
         places_.Moves(RobotId(robot));
         break;
       case Did::kEnds:
+        report_.late = std::max(report_.late, e->late);
         if (e->missed > report_.worst.missed) report_.worst = missed();
         if (e->missed > lines_[robot].log->tolerance) report_.broken.push_back(missed());
         break;

@@ -18,8 +18,9 @@ struct SessionsReport {
     double missed = 0;
   };
   std::vector<Miss>
-      broken;  ///< motions that missed their contracts by more than the tolerance of their robots
-  Miss worst;  ///< of all
+      broken;       ///< motions that missed their contracts by more than the tolerance of their robots
+  Miss worst;       ///< of all
+  double late = 0;  ///< seconds by which motions took longer than they may, at most
   struct End {
     std::string robot, outcome;  ///< `runtime::sessions::Name(Outcome)`
     std::string why;

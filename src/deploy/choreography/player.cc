@@ -135,6 +135,8 @@ void Player::Ends(const MotionRun& motion) {
   if (motion.progress() == Progress::kStopped) Watch(motion.code().end, motion.time());
   SessionEvent event = Event(Did::kEnds, motion.code().call);
   event.missed = motion_missed_;
+  event.late = std::max(0.0, transport::Seconds(now_ - began_) - motion.code().most);
+  late_ = std::max(late_, event.late);
   say_(event);
   if (motion_missed_ > missed_) {
     missed_ = motion_missed_;
@@ -149,6 +151,8 @@ void Player::Ends(const MotionRun& motion) {
 // A body is late, and has to be where the next motion may begin. One that is far away will not come.
 Progress Player::Checked(const MotionRun& motion, Progress progress) {
   const double away = Away(wanted_.values()), astray = Astray();
+  // It is led ahead of time; its contract counts from when it began.
+  const bool early = transport::Seconds(now_ - began_) < motion.code().least;
   if (progress == Progress::kFailed) {
     trouble_ = motion.lost();
   } else if (astray > precision_.lost()) {
@@ -159,7 +163,7 @@ Progress Player::Checked(const MotionRun& motion, Progress progress) {
     trouble_ = fmt::format("`{}` did not bring it where it ends: {:.2g} (metres or radians) are missing",
                            motion.code().call, away);
   } else {
-    return progress;
+    return early ? Progress::kBound : progress;
   }
   return Progress::kFailed;
 }

@@ -52,6 +52,7 @@ class Player final : private sim::motions::Audience {
   /// Returns by how much contracts were missed, at most, and which motion missed it.
   double missed() const { return missed_; }
   const std::string& missed_by() const { return missed_by_; }
+  double late() const { return late_; }  ///< seconds by which motions took longer than they may, at most
   uint64_t broken() const { return broken_; }  ///< how many motions did not keep theirs
 
  private:
@@ -101,7 +102,7 @@ class Player final : private sim::motions::Audience {
   double motion_missed_ = 0;  // of the motion under way
   std::string trouble_;
   uint64_t motions_ = 0, messages_ = 0, broken_ = 0;
-  double missed_ = 0;
+  double missed_ = 0, late_ = 0;
   std::string missed_by_;
 };
 

@@ -42,6 +42,7 @@ nlohmann::json ToJson(const SessionEvent& e) {
     j["values"] = e.values;
   }
   if (e.did == Did::kEnds || e.did == Did::kBreaks) j["missed"] = e.missed;
+  if (e.did == Did::kEnds) j["late"] = e.late;
   if (e.did == Did::kLeaves) j["outcome"] = e.outcome;
   return j;
 }
@@ -58,6 +59,7 @@ std::optional<SessionEvent> EventIn(const nlohmann::json& j) {
       j.at("what").get_to(e.what);
       e.peer = j.value("peer", "");
       e.values = j.value("values", std::vector<double>());
+      e.late = j.value("late", 0.0);
       // JSON has no infinity: of what has no value.
       if (j.contains("missed"))
         e.missed =

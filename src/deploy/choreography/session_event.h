@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -31,6 +32,7 @@ struct SessionEvent {
   std::vector<double> values;  ///< kSent, kTook
   double missed =
       0;  ///< kEnds, kBreaks: by how much the contract was missed, at most, as sensors tell (SI units)
+  double late = 0;      ///< kEnds: seconds by which the motion took longer than it may
   std::string outcome;  ///< kLeaves: `runtime::sessions::Name(Outcome)`
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "runtime/sessions/wire.h"
 
 namespace rondo::runtime::sessions {

@@ -1,15 +1,14 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { colourOf } from "../colours.ts";
-import { bodiesAt, last, mapAt, pathAt, poseAt } from "../data/recording.ts";
+import { bodiesAt, last, mapAt, poseAt } from "../data/recording.ts";
 import { el } from "../dom.ts";
 import type { State } from "../state.ts";
 import { Discs } from "./discs.ts";
 import { groundOf, mapOf } from "./ground.ts";
 import { type Label, Labels } from "./labels.ts";
 import { Solids } from "./solids.ts";
-
-const TRAIL = 2000; // points
+import { Paths, Trails } from "./trails.ts";
 
 /** The space of a run: bodies, the world, where robots were and where they are told to go. Metres; z is up. */
 export class Stage {
@@ -22,8 +21,8 @@ export class Stage {
   private readonly controls: { angle: OrbitControls; top: OrbitControls };
   private readonly bodies = new Solids();
   private readonly discs: Discs | null;
-  private readonly trails: THREE.Line[] = [];
-  private readonly paths: THREE.Line[] = [];
+  private readonly trails: Trails;
+  private readonly paths: Paths;
   private readonly labels = new Labels();
   private readonly bounds = new THREE.Box3();
   private ground: THREE.Group;
@@ -50,13 +49,9 @@ export class Stage {
     const known = recording.bodies.length > 0;
     this.discs = known ? null : new Discs(recording.robots);
     if (this.discs !== null) this.scene.add(this.discs.group);
-    recording.robots.forEach((_, i) => {
-      const trail = line(colourOf(i), TRAIL), path = line(colourOf(i), TRAIL);
-      (path.material as THREE.LineBasicMaterial).opacity = 0.5;
-      this.trails.push(trail);
-      this.paths.push(path);
-      this.scene.add(trail, path);
-    });
+    this.trails = new Trails(recording.robots);
+    this.paths = new Paths(recording.robots);
+    this.scene.add(this.trails.lines, this.paths.lines);
     this.measure();
     this.ground = groundOf(this.bounds, "#8a8f98");
     this.scene.add(this.ground);
@@ -147,14 +142,8 @@ export class Stage {
     this.bodies.show(bodiesAt(recording, look.time));
     this.discs?.show(look.time);
     this.showMap();
-    recording.robots.forEach((robot, i) => {
-      const { times, values } = robot.pose;
-      const to = last(times, look.time) + 1, stride = Math.max(1, Math.ceil(to / TRAIL));
-      const points: number[] = [];
-      for (let k = 0; k < to; k += stride) points.push(values[7 * k]!, values[7 * k + 1]!, values[7 * k + 2]! + 2e-3);
-      set(this.trails[i]!, points);
-      set(this.paths[i]!, Array.from(pathAt(robot, look.time) ?? []));
-    });
+    this.trails.show(look.time);
+    this.paths.show(look.time);
     set(this.ruler, this.marks.flatMap((p) => p.toArray()));
     const camera = this.camera();
     this.renderer.render(this.scene, camera);
