@@ -2,6 +2,7 @@
 #
 #   find_package(rondo REQUIRED)     # rondo::rondo is the program; rondo::adapter has the header of adapters of one's own;
 #                                    # rondo::program those of programs that `rondo build` makes; rondo_MODELS and rondo_EXAMPLES are folders
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # whoever installs has built what is wanted
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(data ${CMAKE_INSTALL_DATADIR}/rondo)
@@ -24,13 +25,13 @@ install(FILES ${CMAKE_BINARY_DIR}/rondoConfig.cmake ${CMAKE_BINARY_DIR}/rondoCon
 
 # What the program says of itself: manual pages, and completion for three shells.
 install(CODE "
-  set(rondo $<TARGET_FILE:rondo>)
+  set(speaker $<TARGET_FILE:rondo>)  # not `rondo`: that is a component
   set(share \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR})
-  execute_process(COMMAND \${rondo} help --pages \${share}/man/man1 COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND \${speaker} help --pages \${share}/man/man1 COMMAND_ERROR_IS_FATAL ANY)
   foreach(file bash:bash-completion/completions/rondo zsh:zsh/site-functions/_rondo fish:fish/vendor_completions.d/rondo.fish)
     string(REGEX MATCH \"^[a-z]+\" shell \${file})
     string(REGEX REPLACE \"^[a-z]+:\" \"\" path \${file})
-    execute_process(COMMAND \${rondo} completion \${shell} OUTPUT_VARIABLE script COMMAND_ERROR_IS_FATAL ANY)
+    execute_process(COMMAND \${speaker} completion \${shell} OUTPUT_VARIABLE script COMMAND_ERROR_IS_FATAL ANY)
     file(WRITE \${share}/\${path} \"\${script}\")
   endforeach()" COMPONENT rondo)
 include(cmake/Package.cmake)

@@ -14,20 +14,17 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_RONDO_PACKAGE_NAME rondo)
 set(CPACK_DEBIAN_RONDO_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RONDO_PACKAGE_SUGGESTS "rondo-doc, librondo-dev, xdg-utils")
-set(CPACK_COMPONENT_RONDO_DESCRIPTION "program, prove, simulate and run teams of robots
- Rondo checks, proves, explores, simulates and runs coordination programs for
- teams of robots (Koord), and choreographies of messages and motions.")
+set(CPACK_COMPONENT_RONDO_DESCRIPTION "Rondo checks, proves, explores, simulates and runs coordination programs for
+teams of robots (Koord), and choreographies of messages and motions.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME librondo-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "rondo (= ${PROJECT_VERSION})")
-set(CPACK_COMPONENT_DEV_DESCRIPTION "headers for Rondo's adapters and programs as C++
- What sensors and actuators of one's own, and C++ that rondo build makes, are
- compiled against, with a package for CMake.")
+set(CPACK_COMPONENT_DEV_DESCRIPTION "What sensors and actuators of one's own, and C++ that rondo build makes, are
+compiled against, with a package for CMake.")
 set(CPACK_DEBIAN_DOC_PACKAGE_NAME rondo-doc)
 set(CPACK_DEBIAN_DOC_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
-set(CPACK_COMPONENT_DOC_DESCRIPTION "documents of Rondo
- Languages, tutorials, theory, decisions, and the schema of JSON.")
+set(CPACK_COMPONENT_DOC_DESCRIPTION "Languages, tutorials, theory, decisions, and the schema of JSON.")
 
 # What Debian wants of each package: who may do what with it, and what changed.
 string(CONCAT copyright
