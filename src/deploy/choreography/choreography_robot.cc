@@ -79,7 +79,7 @@ class PlayerProcess {
     const size_t node = participant_->AddNode({space, "rondo"});
     const std::string events = bodies[0].Full("events");
     orders_.emplace(bodies[0]);
-    senses_.emplace(std::move(bodies), std::move(signals), options_.max_age);
+    senses_.emplace(std::move(bodies), signals, options_.max_age);
     if (auto begun = senses_->Begin(*participant_, node); !begun.ok()) return begun;
     if (auto begun = orders_->Begin(*participant_, node); !begun.ok()) return begun;
     auto said = participant_->Publish(node, events, ros::std_msgs::String::kMessage, {.depth = 1000});

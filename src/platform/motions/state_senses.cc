@@ -23,7 +23,7 @@ double NextTo(double heading, double other) {
 
 }  // namespace
 
-StateSenses::StateSenses(std::vector<BodyTopics> bodies, std::vector<Signal> signals, double max_age)
+StateSenses::StateSenses(std::vector<BodyTopics> bodies, const std::vector<Signal>& signals, double max_age)
     : bodies_(std::move(bodies)), max_age_(max_age) {
   for (const BodyTopics& body : bodies_) {
     auto& values = values_.emplace_back();
@@ -71,7 +71,7 @@ base::Result<bool> StateSenses::Begin(dds::Participant& participant, size_t node
           values[i].value = values[i].turns ? NextTo(place[i], values[i].value) : place[i];
         return true;
       };
-      const auto made =
+      auto made =
           Listen(participant, node, source++, ros::nav_msgs::Odometry::kMessage, ros::kSensorData, read);
       if (!made.ok()) return made;
     }
@@ -90,7 +90,7 @@ base::Result<bool> StateSenses::Begin(dds::Participant& participant, size_t node
       for (size_t i = 0; i < positions.size(); ++i) values[first + i].value = positions[i];
       return true;
     };
-    const auto made =
+    auto made =
         Listen(participant, node, source++, ros::sensor_msgs::JointState::kMessage, ros::kSensorData, read);
     if (!made.ok()) return made;
   }
@@ -101,8 +101,7 @@ base::Result<bool> StateSenses::Begin(dds::Participant& participant, size_t node
       value.value = m.data;
       return true;
     };
-    const auto made =
-        Listen(participant, node, source++, ros::std_msgs::Float64::kMessage, ros::kDefault, read);
+    auto made = Listen(participant, node, source++, ros::std_msgs::Float64::kMessage, ros::kDefault, read);
     if (!made.ok()) return made;
   }
   return true;

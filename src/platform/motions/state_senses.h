@@ -16,7 +16,7 @@ class StateSenses {
   /// @param bodies   the robots that are heard.
   /// @param signals  of the robot itself, and of the environment.
   /// @param max_age  seconds after which a robot is no longer where it was said to be.
-  StateSenses(std::vector<BodyTopics> bodies, std::vector<Signal> signals, double max_age);
+  StateSenses(std::vector<BodyTopics> bodies, const std::vector<Signal>& signals, double max_age);
 
   /// Begins to listen. @error in the words of the library.
   base::Result<bool> Begin(dds::Participant& participant, size_t node);

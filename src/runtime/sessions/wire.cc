@@ -1,5 +1,6 @@
 #include "runtime/sessions/wire.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
