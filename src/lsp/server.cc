@@ -192,7 +192,7 @@ void Server::Open(const json& parameters) {
   document.path = Plain(PathOf(document.uri));
   const std::string path = document.path;
   documents_.insert_or_assign(path, std::move(document));
-  Forget(RootOf(path));
+  Touch(path);
 }
 
 void Server::Change(const json& parameters) {
@@ -211,7 +211,23 @@ void Server::Change(const json& parameters) {
     document.text.replace(begin, end - begin, text);
   }
   document.version = parameters.at("textDocument").value("version", document.version + 1);
-  Forget(RootOf(document.path));
+  Touch(document.path);
+}
+
+void Server::Touch(const std::string& path) {
+  Forget(RootOf(path));
+  for (const auto& [root, checked] : checked_) {
+    if (root != RootOf(path) && std::ranges::find(checked.files, path) != checked.files.end()) Forget(root);
+  }
+}
+
+bool Server::Saved(const std::string& root) const {
+  return std::ranges::all_of(checked_.at(root).files, [&](const std::string& path) {
+    const Document* document = At(path);
+    if (document == nullptr) return true;
+    const auto disk = workspace::Session().read(path);
+    return disk.ok() && disk.value() == document->text;
+  });
 }
 
 // What was said of the text before is not said of this one.
@@ -238,7 +254,7 @@ void Server::Save(const json& parameters) {
   const auto errors = [](const auto& of) {
     return std::ranges::any_of(of.second, [](const json& d) { return d["severity"] == 1; });
   };
-  if (std::ranges::any_of(checked_[root].diagnostics, errors)) return;
+  if (std::ranges::any_of(checked_[root].diagnostics, errors) || !Saved(root)) return;
   const Document* whole = At(root);
   verifier_.Start(root, whole == nullptr ? 0 : whole->version);
 }
@@ -285,6 +301,9 @@ void Server::Check(const std::string& root) {
   workspace::Session session;
   Prepare(session);
   workspace::CheckFile(root, session);
+  checked.files.clear();
+  for (size_t f = 0; f < session.sources.size(); ++f)
+    checked.files.push_back(Plain(std::string(session.sources.path(diag::FileId(f)))));
   for (const diag::Diagnostic& d : session.diagnostics.Sorted()) {
     const std::string uri =
         d.span.file.valid() ? UriOf(Plain(std::string(session.sources.path(d.span.file)))) : UriOf(root);

@@ -43,6 +43,7 @@ class Server {
   };
   /// Is what is known of a file that is checked as a whole, with what belongs to it.
   struct Checked {
+    std::vector<std::string> files;                        // that a check read: paths
     std::map<std::string, std::vector<Json>> diagnostics;  // by address: as they are published
     std::map<std::string, std::vector<Json>> fixes;        // by address: code actions with their ranges
     std::map<std::string, std::vector<Json>> proofs;       // by address: diagnostics of proofs
@@ -75,6 +76,10 @@ class Server {
   void Check(const std::string& root);
   void Publish(const std::string& root);
   void Forget(const std::string& root);
+  /// Forgets everything that depends on a file.
+  void Touch(const std::string& path);
+  /// Reports whether what a proof reads from the disk is what the editor has.
+  bool Saved(const std::string& root) const;
   Json RangeOf(const workspace::Session& session, diag::Span span) const;
   /// Converts a place of the schema of JSON, in the text that the editor has.
   Json RangeOf(const Json& place) const;

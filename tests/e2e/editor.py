@@ -177,6 +177,17 @@ def files(folder):
     editor.change(motion, 2, {"text": world.replace("a: R", "a: Q")})
     found = editor.diagnostics(motion.as_uri(), 2)
     check("a robot that is none", any("Q" in d["message"] for d in found), found)
+    # An import that changes changes what depends on it.
+    editor.change(motion, 3, {"text": world})
+    editor.diagnostics(motion.as_uri(), 3)
+    count = len(editor.heard)
+    editor.open(model, model.read_text().replace("robot R", "robot S"))
+    again = editor.wait(lambda: [d for m in editor.heard[count:] if m["method"] == "textDocument/publishDiagnostics" and m["params"]["uri"] == motion.as_uri() for d in m["params"]["diagnostics"] if "R" in d["message"]], 10)
+    check("an import that changes", again, editor.heard[count:])
+    # The disk has another text than the editor: what would be proved is not what is shown.
+    editor.change(program, 2, {"text": text + "\n# not saved\n"})
+    editor.save(spec)
+    check("nothing is proved of another text", editor.wait(lambda: any(m["method"] == "rondo/verification" and m["params"]["items"] for m in editor.heard[count:]), 3) is not True)
     check("goodbye again", editor.close() == 0)
 
 
