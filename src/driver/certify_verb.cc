@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/parallel.h"
 #include "contracts/tube_certificate.h"
 #include "driver/command.h"
 #include "driver/terminal.h"
@@ -20,6 +21,7 @@ namespace {
 struct Options {
   std::vector<std::string> files;
   std::string script;
+  unsigned jobs = 0;
   bool json = false;
 };
 
@@ -46,6 +48,34 @@ reach::certify::Acceptance Tube(const std::string& path, diag::FileId file, work
   return verdict.value();
 }
 
+// A certificate, and what its check says.
+struct Checked {
+  std::string path;
+  diag::FileId file;
+  bool tube = false;
+  diag::Diagnostics diagnostics;
+  solve::certify::Tally tally;
+};
+
+// Of `rondo solve`: may be checked beside others.
+void Refutation(Checked& one, const diag::SourceSet& sources, const std::vector<std::string>& questions,
+                const std::string& script, const base::StopToken& stop) {
+  solve::certify::Certificate certificate;
+  solve::certify::ReadCertificate(sources, one.file, certificate, one.diagnostics);
+  if (!one.diagnostics.has_errors()) one.tally = solve::certify::Check(certificate, one.diagnostics, stop);
+  const std::string_view whole = sources.text(one.file);
+  // The text of the question, and no command behind it.
+  const bool other = !script.empty() && std::ranges::none_of(questions, [&](const std::string& q) {
+    return whole.starts_with(q) && std::ranges::all_of(certificate.script.commands, [&](const auto& command) {
+             return command.span.begin < q.size();
+           });
+  });
+  if (other) {
+    one.diagnostics.Report(diag::Kind::kCertificateRejected, {one.file, 0, 1},
+                           fmt::format("`{}` asks something else", script));
+  }
+}
+
 ExitStatus Run(const Options& options) {
   workspace::Session session;
   std::vector<std::string> questions;
@@ -57,52 +87,43 @@ ExitStatus Run(const Options& options) {
   }
   base::StopToken stop;
   const InterruptScope interrupt(stop);
+  std::vector<Checked> all;
+  for (const std::string& path : options.files) {
+    const auto file = workspace::ReadSource(path, workspace::Wanted::kText, session);
+    if (file) all.push_back({path, *file, contracts::IsTube(session.sources.text(*file)), {}, {}});
+  }
+  base::ParallelFor(all.size(), options.jobs, [&](size_t i) {
+    if (!all[i].tube) Refutation(all[i], session.sources, questions, options.script, stop);
+  });
   nlohmann::json list = nlohmann::json::array();
   std::string text;
   bool stopped = false;
-  for (const std::string& path : options.files) {
-    const auto file = workspace::ReadSource(path, workspace::Wanted::kText, session);
-    if (!file) continue;
-    const size_t before = session.diagnostics.errors();
-    if (contracts::IsTube(session.sources.text(*file))) {
+  for (const Checked& one : all) {
+    if (one.tube) {
       if (!options.script.empty()) {
-        session.diagnostics.Report(diag::Kind::kCertificateRejected, {*file, 0, 1},
+        session.diagnostics.Report(diag::Kind::kCertificateRejected, {one.file, 0, 1},
                                    "a certificate of a contract is about no script");
         continue;
       }
-      const auto verdict = Tube(path, *file, session, stop);
+      const auto verdict = Tube(one.path, one.file, session, stop);
       stopped = stopped || stop.cancelled();
-      list.push_back({{"file", path}, {"accepted", verdict.accepted}, {"steps", verdict.steps}});
+      list.push_back({{"file", one.path}, {"accepted", verdict.accepted}, {"steps", verdict.steps}});
       if (verdict.accepted)
-        text += fmt::format("{}: accepted: the contract holds ({} steps)\n", path, verdict.steps);
+        text += fmt::format("{}: accepted: the contract holds ({} steps)\n", one.path, verdict.steps);
       continue;
     }
-    solve::certify::Certificate certificate;
-    solve::certify::ReadCertificate(session.sources, *file, certificate, session.diagnostics);
-    solve::certify::Tally tally;
-    if (session.diagnostics.errors() == before)
-      tally = solve::certify::Check(certificate, session.diagnostics, stop);
-    stopped = stopped || tally.stopped;
-    const std::string_view whole = session.sources.text(*file);
-    // The text of the question, and no command behind it.
-    const bool other = !options.script.empty() && std::ranges::none_of(questions, [&](const std::string& q) {
-      return whole.starts_with(q) &&
-             std::ranges::all_of(certificate.script.commands,
-                                 [&](const auto& command) { return command.span.begin < q.size(); });
-    });
-    if (other) {
-      session.diagnostics.Report(diag::Kind::kCertificateRejected, {*file, 0, 1},
-                                 fmt::format("`{}` asks something else", options.script));
-    }
-    const bool accepted = session.diagnostics.errors() == before && !tally.stopped;
-    list.push_back({{"file", path},
+    stopped = stopped || one.tally.stopped;
+    const bool accepted = !one.diagnostics.has_errors() && !one.tally.stopped;
+    for (const diag::Diagnostic& d : one.diagnostics.all())
+      session.diagnostics.Report(d.kind, d.span, d.message) = d;
+    list.push_back({{"file", one.path},
                     {"accepted", accepted},
-                    {"assertions", tally.assertions},
-                    {"cases", tally.cases},
-                    {"boxes", tally.boxes}});
+                    {"assertions", one.tally.assertions},
+                    {"cases", one.tally.cases},
+                    {"boxes", one.tally.boxes}});
     if (!accepted) continue;
     text += fmt::format("{}: accepted: the {} assertions have no common solution ({} cases, {} boxes)\n",
-                        path, tally.assertions, tally.cases, tally.boxes);
+                        one.path, one.tally.assertions, one.tally.cases, one.tally.boxes);
   }
   const bool good = !session.diagnostics.has_errors() && !stopped;
   if (options.json) {
@@ -129,6 +150,7 @@ void AddCertifyVerb(CLI::App& app, ExitStatus& status) {
               "certificates: a script and its refutation, or a contract and how it was proved")
       .Required();
   verb.Option("--of", options->script, "the script that the certificate should be about");
+  verb.Option("--jobs", options->jobs, "how many are checked at the same time; default: one for each core");
   verb.Flag("--json", options->json, "the result as JSON on standard output");
   verb.Footer(
       "example: rondo solve --cert it.cert examples/smt/rectangles.smt2\n"

@@ -35,6 +35,7 @@ struct Options {
   bool no_symmetry = false;
   bool no_reduction = false;
   bool compact = false;
+  unsigned jobs = 0;
   uint64_t walks = 0;
   uint64_t steps = 1000;
   uint64_t seed = 1;
@@ -166,6 +167,7 @@ ExitStatus Run(const Options& options) {
   exploration.deadlocks = options.deadlock;
   exploration.reduce = !options.no_reduction;
   exploration.symmetry = !options.no_symmetry;
+  exploration.jobs = options.jobs;
   exploration.walks = options.walks;
   exploration.steps = options.steps;
   exploration.seed = options.seed;
@@ -258,6 +260,9 @@ void AddExploreVerb(CLI::App& app, ExitStatus& status) {
             "every order of the robots, one after the other (slow: to check the explorer)");
   verb.Flag("--compact", options->compact,
             "keep 64 bits of each state: less memory, but two states may be taken for one");
+  verb.Option("--jobs", options->jobs,
+              "threads; default: one for each core. What is found does not depend on it")
+      .Between(1U, 256U);
   verb.Option("--walks", options->walks, "so many random walks instead of all states");
   verb.Option("--steps", options->steps, "length of a random walk; default: 1000");
   verb.Option("--seed", options->seed, "of the random walks; default: 1");

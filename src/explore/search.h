@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "base/crew.h"
 #include "base/stop.h"
+#include "explore/candidates.h"
+#include "explore/frontier.h"
+#include "explore/state_table.h"
 #include "explore/transition_system.h"
-#include "explore/visited_set.h"
+#include "explore/visited.h"
 
 /// Breadth first search over any transition system, for explorations of Koord programs.
 namespace rondo::explore {
@@ -21,8 +25,8 @@ struct SearchOptions {
   uint64_t states = 100'000'000;  ///< the search gives up once it has visited so many
   size_t memory = SIZE_MAX;       ///< ... or before it takes more than so many bytes
   std::function<size_t()> beside =
-      {};  ///< returns how many bytes the system takes itself, asked now and then
-  /// Hash compaction: a hash for each state instead of its words; a state may be missed.
+      {};  ///< returns how many bytes the systems take themselves, asked now and then
+  /// Hash compaction: a hash for each state instead of its bytes; a state may be missed.
   bool compact = false;
   bool deadlocks = false;  ///< whether a state that `Deadlocked` accepts ends the search
   /// Tells how far a search is.
@@ -56,39 +60,58 @@ struct SearchResult {
   uint32_t depth = 0;        ///< of the deepest state, in transitions
   uint64_t initial = 0;      ///< initial states, each once
   double seconds = 0;
-  size_t bytes = 0;  ///< of states, table and predecessors, as allocated
+  size_t bytes = 0;  ///< of states, index, predecessors and lists, as allocated
   Broken broken;     ///< which property, if the ending is kBroken
-  /// The words of each state from an initial one to the state that is broken or dead, or whose successors
-  /// break something. As few states as there can be, since the search is breadth first.
-  std::vector<std::vector<Word>> path;
+  /// The states from an initial one to the state that is broken or dead, or whose successors break something.
+  /// As few as there can be, since the search is breadth first.
+  std::vector<KeptState> path;
 };
 
 /// Runs one breadth first search; an object serves one call of `Run`. See `Search`.
 template <TransitionSystem S>
 class Searcher {
  public:
-  Searcher(S& system, const SearchOptions& options)
-      : system_(system), options_(options), visited_(system.words(), options.compact) {}
+  Searcher(std::span<S* const> systems, const SearchOptions& options)
+      : systems_(systems),
+        options_(options),
+        crew_(static_cast<unsigned>(systems.size())),
+        visited_(options.compact) {}
 
   SearchResult Run() {
-    Begin();
-    while (!done_ && at_ < level_end_) {
+    List([&](const explore::Visit& visit) { return systems_[0]->Initial(visit); }, kNoState);
+    result_.initial = result_.states;
+    std::swap(frontier_, next_);
+    while (!done_ && frontier_.size() > 0) {
       if (options_.depth && result_.depth >= *options_.depth) {
         End(Ending::kDepth);
         break;
       }
       Level();
     }
-    result_.states = visited_.size();
     result_.seconds = Seconds();
     result_.bytes = visited_.bytes() + OtherBytes();
-    if (bad_ != kNone) FindPath();
+    if (result_.ending == Ending::kBroken || result_.ending == Ending::kDeadlock) FindPath();
     return std::move(result_);
   }
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr uint32_t kNone = 0xffffffffu;
+
+  // Why the states behind some point of a list do not count.
+  enum class Cut : uint8_t { kNone, kBroken, kDead, kStopped, kMany };
+  struct Listed {
+    Cut cut = Cut::kNone;
+    size_t next = 0;  // kMany: the number of the state that is to be expanded next
+    uint32_t source = 0;
+    Broken broken;
+  };
+
+  static constexpr size_t kBatch = 4096;            // states, at most
+  static constexpr uint64_t kBatchListed = 16'384;  // successors of a batch, as far as can be foreseen
+  static constexpr uint32_t kListed = 16'384;       // successors in one list
+  static constexpr size_t kTask = 64;               // states of a batch that one thread takes at a time
+  static constexpr uint32_t kPolled = 1024;         // successors between two looks at the clock
+  static constexpr size_t kBetween = 8;             // and states
 
   double Seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
@@ -97,72 +120,138 @@ class Searcher {
     done_ = true;
   }
 
-  Seen Meet(std::span<const Word> state) {
-    if ((++result_.transitions & 0xfff) == 0) {
-      Tell();
-      if (options_.stop.StopRequested()) {
-        stopped_ = true;
-        return Seen::kStop;
-      }
-    }
-    if (options_.beside && (result_.transitions & 0xff) == 0) beside_ = options_.beside();
-    if (visited_.bytes_next() + OtherBytes() > options_.memory) {
-      large_ = true;
-      return Seen::kStop;
-    }
-    bool fresh = false;
-    visited_.Insert(state, fresh);
-    if (!fresh) return Seen::kKnown;
-    parent_.push_back(current_);
-    if (options_.compact) next_.insert(next_.end(), state.begin(), state.end());
-    full_ = visited_.size() >= std::min<uint64_t>(options_.states, VisitedSet::kMost);
-    return full_ ? Seen::kStop : Seen::kNew;
-  }
-
-  // What became of the states that were met just now.
-  void Judge(const Broken& broken) {
-    if (broken.property >= 0) {
-      result_.broken = broken;
-      bad_ = broken.at_visited ? static_cast<uint32_t>(visited_.size() - 1) : current_;
-      End(Ending::kBroken);
-    } else if (stopped_) {
-      End(Ending::kStopped);
-    } else if (large_) {
-      End(Ending::kMemory);
-    } else if (full_) {
-      End(Ending::kStates);
-    }
-  }
-
-  void Begin() {
-    Judge(system_.Initial(visit_));
-    result_.initial = visited_.size();
-    level_end_ = static_cast<uint32_t>(visited_.size());
-  }
-
-  // All states of one depth.
   void Level() {
-    frontier_.swap(next_);
-    next_.clear();
-    for (const uint32_t first = at_; at_ < level_end_ && !done_; ++at_) {
-      current_ = at_;
-      const size_t words = state_.size();
-      const std::span<const Word> here =
-          options_.compact ? std::span<const Word>(frontier_).subspan((at_ - first) * words, words)
-                           : visited_[at_];
-      state_.assign(here.begin(), here.end());
-      if (options_.deadlocks && system_.Deadlocked(state_)) {
-        bad_ = at_;
-        End(Ending::kDeadlock);
-        break;
-      }
-      Judge(system_.Successors(state_, visit_));
-      if ((++polled_ & 0xff) != 0) continue;
-      Tell();
-      if (options_.stop.StopRequested() && !done_) End(Ending::kStopped);
+    next_.Clear();
+    for (at_ = 0; at_ < frontier_.size() && !done_;) {
+      // Does not depend on the number of threads, nor does anything else that decides what counts.
+      const uint64_t listed = std::max<uint64_t>(1, result_.transitions);
+      const auto size = std::clamp<uint64_t>(kBatchListed * (expanded_ + 1) / listed, 1, kBatch);
+      Batch(std::min<size_t>(size, frontier_.size() - at_));
     }
-    if (visited_.size() > level_end_) ++result_.depth;
-    level_end_ = static_cast<uint32_t>(visited_.size());
+    if (next_.size() > 0) ++result_.depth;
+    std::swap(frontier_, next_);
+  }
+
+  // The successors of the next states: listed by all threads, and then visited in order.
+  void Batch(size_t size) {
+    const size_t task = std::clamp<size_t>(size / (4 * crew_.size()), 1, kTask);
+    const size_t tasks = (size + task - 1) / task;
+    if (lists_.size() < tasks) lists_.resize(tasks);
+    listed_.assign(tasks, {});
+    crew_.Run(tasks, [&](size_t member, size_t t) {
+      listed_[t] = Expand(member, t * task, std::min(size, (t + 1) * task), lists_[t]);
+    });
+    size_t used = 0;
+    while (used + 1 < tasks && listed_[used].cut == Cut::kNone) ++used;
+    const Listed& last = listed_[used];
+    parents_.clear();
+    for (size_t i = 0; i < size; ++i) parents_.push_back(frontier_.id(at_ + i));
+    Settle(std::span(lists_).first(used + 1), last);
+    const size_t ended = last.cut == Cut::kMany ? last.next : size;
+    at_ += ended;
+    expanded_ += ended;
+    if (last.cut != Cut::kMany || done_ || ended > 0) return;
+    // One state alone has too many: they are visited as they are listed.
+    state_.assign(frontier_[at_].begin(), frontier_[at_].end());
+    const StateId id = frontier_.id(at_);
+    List([&](const explore::Visit& visit) { return systems_[0]->Successors(state_, visit); }, id);
+    ++at_;
+    ++expanded_;
+  }
+
+  Listed Expand(size_t member, size_t first, size_t last, Candidates& list) {
+    S& system = *systems_[member];
+    list.Clear();
+    bool stopped = false;
+    for (size_t i = first; i < last; ++i) {
+      const auto source = static_cast<uint32_t>(i);
+      if (list.count() >= kListed) return {Cut::kMany, i, source, {}};
+      if ((i - first) % kBetween == 0 && Poll(member)) return {Cut::kStopped, i, source, {}};
+      const State state = frontier_[at_ + i];
+      if (options_.deadlocks && system.Deadlocked(state)) return {Cut::kDead, i, source, {}};
+      const uint32_t before = list.count();
+      const Broken broken = system.Successors(state, [&](State next) {
+        list.Add(next, source);
+        const uint32_t count = list.count() - before;
+        if (count % kPolled == 0) stopped = stopped || Poll(member);
+        return !stopped && count <= kListed;
+      });
+      if (stopped) return {Cut::kStopped, i, source, {}};
+      if (list.count() - before > kListed) {
+        list.KeepFirst(before);
+        return {Cut::kMany, i, source, {}};
+      }
+      if (broken.property >= 0) return {Cut::kBroken, i, source, broken};
+    }
+    return {};
+  }
+
+  // What `list` lists from one state, in pieces.
+  template <typename ListAll>
+  void List(const ListAll& list, StateId from) {
+    if (lists_.empty()) lists_.resize(1);
+    parents_.assign(1, from);
+    Candidates& piece = lists_[0];
+    piece.Clear();
+    bool stopped = false;
+    const Broken broken = list([&](State next) {
+      piece.Add(next, 0);
+      if (piece.count() % kPolled == 0) stopped = stopped || Poll(0);
+      if (piece.count() < kListed || stopped) return !stopped;
+      Settle({&piece, 1}, {});
+      piece.Clear();
+      return !done_;
+    });
+    if (done_) return;
+    if (stopped) return End(Ending::kStopped);
+    Settle({&piece, 1}, broken.property >= 0 ? Listed{Cut::kBroken, 0, 0, broken} : Listed{});
+  }
+
+  // Visits what was listed up to a cut. What was found first counts, and nothing behind it.
+  void Settle(std::span<const Candidates> lists, const Listed& last) {
+    if (visited_.BytesAfter(lists) + OtherBytes() > options_.memory) return End(Ending::kMemory);
+    const auto check = [&](size_t member, State state) { return systems_[member]->Check(state); };
+    uint64_t listed = 0;
+    for (const Candidates& list : lists) listed += list.count();
+    StateId newest = kNoState;
+    for (const Visited::Fresh& fresh : visited_.Visit(lists, parents_, check, crew_)) {
+      ++result_.states;
+      newest = fresh.id;
+      if (fresh.property >= 0) {
+        result_.transitions += fresh.order + 1;
+        return Break({fresh.property, true}, fresh.id);
+      }
+      next_.Add(fresh.id, fresh.state);
+      if (result_.states < options_.states) continue;
+      result_.transitions += fresh.order + 1;
+      return End(Ending::kStates);
+    }
+    result_.transitions += listed;
+    if (visited_.full()) return End(Ending::kStates);
+    switch (last.cut) {
+      case Cut::kNone:
+      case Cut::kMany:
+        return;
+      case Cut::kStopped:
+        return End(Ending::kStopped);
+      case Cut::kDead:
+        bad_ = parents_[last.source];
+        return End(Ending::kDeadlock);
+      case Cut::kBroken:
+        return Break(last.broken, last.broken.at_visited ? newest : parents_[last.source]);
+    }
+  }
+
+  void Break(const Broken& broken, StateId state) {
+    result_.broken = broken;
+    bad_ = state;
+    End(Ending::kBroken);
+  }
+
+  // Of member 0, which runs in the thread of the caller, also tells how far the search is.
+  bool Poll(size_t member) {
+    if (member == 0) Tell();
+    return options_.stop.StopRequested();
   }
 
   void Tell() {
@@ -170,64 +259,73 @@ class Searcher {
     const auto now = Clock::now();
     if (now - last_ <= std::chrono::milliseconds(200)) return;
     last_ = now;
-    options_.progress({visited_.size(), visited_.size() - at_, result_.depth, Seconds()});
+    options_.progress({result_.states, frontier_.size() - at_ + next_.size(), result_.depth, Seconds()});
   }
 
   size_t OtherBytes() const {
-    return beside_ + parent_.size() * sizeof(uint32_t) +
-           (frontier_.capacity() + next_.capacity()) * sizeof(Word);
+    size_t all = frontier_.bytes() + next_.bytes() + (options_.beside ? options_.beside() : 0);
+    for (const Candidates& list : lists_) all += list.bytes();
+    return all;
   }
 
-  // The numbers of the path are known; its states are found again from the initial ones.
+  // The ids of the path are known; its states are found again from the initial ones. Then the first system
+  // meets once more what is broken on the way, so that it can tell of it.
   void FindPath() {
-    std::vector<uint32_t> numbers;
-    for (uint32_t i = bad_; i != kNone; i = parent_[i]) numbers.insert(numbers.begin(), i);
-    for (const uint32_t number : numbers) {
-      std::vector<Word> found;
-      const Visit look = [&](std::span<const Word> candidate) {
-        if (!visited_.Is(candidate, number)) return Seen::kKnown;
+    std::vector<StateId> ids;
+    for (StateId id = bad_; id != kNoState; id = visited_.Parent(id)) ids.push_back(id);
+    std::reverse(ids.begin(), ids.end());
+    const auto from_last = [&](const explore::Visit& visit) {
+      return result_.path.empty() ? systems_[0]->Initial(visit)
+                                  : systems_[0]->Successors(result_.path.back(), visit);
+    };
+    for (const StateId id : ids) {
+      KeptState found;
+      from_last([&](State candidate) {
+        if (!visited_.Is(candidate, id)) return true;
         found.assign(candidate.begin(), candidate.end());
-        return Seen::kStop;
-      };
-      if (result_.path.empty()) {
-        system_.Initial(look);
-      } else {
-        system_.Successors(result_.path.back(), look);
-      }
+        return false;
+      });
       result_.path.push_back(std::move(found));
     }
+    if (result_.ending == Ending::kBroken && !result_.broken.at_visited)
+      from_last([](State) { return true; });
   }
 
-  S& system_;
+  std::span<S* const> systems_;
   const SearchOptions& options_;
+  base::Crew crew_;
   SearchResult result_;
-  VisitedSet visited_;
-  std::deque<uint32_t> parent_;  // by number of a state
-  std::vector<Word> frontier_;   // with hash compaction: the words of the states of this level
-  std::vector<Word> next_;
-  std::vector<Word> state_ = std::vector<Word>(system_.words());
-  const Visit visit_ = [this](std::span<const Word> state) { return Meet(state); };
-  uint32_t current_ = kNone;  // whose successors are met
-  uint32_t at_ = 0;
-  uint32_t level_end_ = 0;
-  uint32_t bad_ = kNone;
-  uint64_t polled_ = 0;
-  size_t beside_ = 0;
-  bool full_ = false;
-  bool large_ = false;
-  bool stopped_ = false;  // in the middle of a state
+  Visited visited_;
+  Frontier frontier_;
+  Frontier next_;
+  size_t at_ = 0;          // the next state of the frontier
+  uint64_t expanded_ = 0;  // states whose successors were listed
+  std::vector<Candidates> lists_;
+  std::vector<Listed> listed_;
+  std::vector<StateId> parents_;
+  KeptState state_;
+  StateId bad_ = kNoState;
   bool done_ = false;
   const Clock::time_point begin_ = Clock::now();
   Clock::time_point last_ = begin_;
 };
 
-/// Searches breadth first from all initial states, by one thread.
+/// Searches breadth first from all initial states, with a thread for each of the systems, which are all the
+/// same. The result does not depend on how many there are, but for seconds and bytes, and neither does the
+/// path; what is told of a broken property, the first system knows.
 ///
 /// Exact unless `options.compact`: then a state whose hash was seen before is taken for visited. Memory is
-/// O(states): the words of each state (or its hash) and 10 to 15 bytes more.
+/// O(states): the bytes of each state (or its hash) and 13 to 20 more.
+template <TransitionSystem S>
+SearchResult Search(std::span<S* const> systems, const SearchOptions& options) {
+  return Searcher<S>(systems, options).Run();
+}
+
+/// Searches with one system, by the thread of the caller.
 template <TransitionSystem S>
 SearchResult Search(S& system, const SearchOptions& options) {
-  return Searcher<S>(system, options).Run();
+  S* const only = &system;
+  return Search<S>(std::span<S* const>(&only, 1), options);
 }
 
 }  // namespace rondo::explore

@@ -2,39 +2,45 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
+#include <map>
+#include <utility>
+#include <vector>
 
 namespace rondo::explore {
 namespace {
 
-// Two counters below a limit; a state is one word.
+KeptState Bytes(uint64_t value) {
+  KeptState bytes;
+  for (; value > 0; value /= 256) bytes.push_back(static_cast<uint8_t>(value % 256));
+  return bytes;
+}
+
+uint64_t Value(State state) {
+  uint64_t value = 0;
+  for (size_t i = state.size(); i > 0; --i) value = value * 256 + state[i - 1];
+  return value;
+}
+
+// Two counters below a limit; a state is one number.
 struct Counters {
-  Word limit = 10;
-  Word bad = 1'000'000;  // the sum that breaks the property
-  bool ends = false;     // both at the limit: nothing follows
-  static size_t words() { return 1; }
-  Broken Visited(Word state, const Visit& visit, bool& stop) const {
-    const Seen seen = visit({&state, 1});
-    stop = seen == Seen::kStop;
-    if (seen == Seen::kNew && state / 1000 + state % 1000 >= bad) return {0, true};
+  uint64_t limit = 10;
+  uint64_t bad = 1'000'000;     // the sum that breaks the property
+  uint64_t faulty = 1'000'000;  // the sum from which nothing can be listed
+  bool ends = false;            // both at the limit: nothing follows
+  static Broken Initial(const Visit& visit) {
+    visit({});
     return {};
   }
-  Broken Initial(const Visit& visit) const {
-    bool stop = false;
-    return Visited(0, visit, stop);
-  }
-  Broken Successors(std::span<const Word> state, const Visit& visit) const {
-    const Word a = state[0] / 1000;
-    const Word b = state[0] % 1000;
-    bool stop = false;
-    if (a < limit) {
-      const Broken broken = Visited((a + 1) * 1000 + b, visit, stop);
-      if (broken.property >= 0 || stop) return broken;
-    }
-    if (b < limit) return Visited(a * 1000 + b + 1, visit, stop);
+  Broken Successors(State state, const Visit& visit) const {
+    const uint64_t a = Value(state) / 1000;
+    const uint64_t b = Value(state) % 1000;
+    if (a < limit && !visit(Bytes((a + 1) * 1000 + b))) return {};
+    if (a + b >= faulty) return {1, false};
+    if (b < limit) visit(Bytes(a * 1000 + b + 1));
     return {};
   }
-  bool Deadlocked(std::span<const Word> state) const { return !ends && state[0] == limit * 1000 + limit; }
+  int Check(State state) const { return Value(state) / 1000 + Value(state) % 1000 >= bad ? 0 : -1; }
+  bool Deadlocked(State state) const { return !ends && Value(state) == limit * 1000 + limit; }
 };
 
 TEST(Search, VisitsEveryStateOnce) {
@@ -59,9 +65,9 @@ TEST(Search, FindsAShortestPath) {
     const SearchResult result = Search(system, options);
     EXPECT_EQ(result.ending, Ending::kBroken);
     ASSERT_EQ(result.path.size(), 8U);
-    EXPECT_EQ(result.path[0][0], 0U);
+    EXPECT_EQ(Value(result.path[0]), 0U);
     for (size_t i = 1; i < result.path.size(); ++i) {
-      const Word step = result.path[i][0] - result.path[i - 1][0];
+      const uint64_t step = Value(result.path[i]) - Value(result.path[i - 1]);
       EXPECT_TRUE(step == 1 || step == 1000);
     }
   }
@@ -89,7 +95,7 @@ TEST(Search, EndsBeforeItTakesTooMuchMemory) {
   Counters system;
   system.limit = 900;
   SearchOptions options;
-  options.memory = 1'000'000;
+  options.memory = 6'000'000;
   const SearchResult result = Search(system, options);
   EXPECT_EQ(result.ending, Ending::kMemory);
   EXPECT_GT(result.states, 10'000U);
@@ -101,17 +107,18 @@ TEST(Search, EndsBeforeItTakesTooMuchMemory) {
 TEST(Search, TellsHowFarItIsInTheMiddleOfAState) {
   // The first state has very many successors.
   struct Wide {
-    static size_t words() { return 1; }
-    Broken Initial(const Visit& visit) const {
-      const Word zero = 0;
-      visit({&zero, 1});
+    static Broken Initial(const Visit& visit) {
+      visit({});
       return {};
     }
-    Broken Successors(std::span<const Word>, const Visit& visit) const {
-      for (Word next = 0; next < 20'000'000 && !told; ++next) visit({&next, 1});
+    Broken Successors(State, const Visit& visit) const {
+      for (uint64_t next = 0; next < 20'000'000 && !told; ++next) {
+        if (!visit(Bytes(next))) break;
+      }
       return {};
     }
-    static bool Deadlocked(std::span<const Word>) { return false; }
+    static int Check(State) { return -1; }
+    static bool Deadlocked(State) { return false; }
     bool told = false;
   } system;
   SearchOptions options;
@@ -132,18 +139,139 @@ TEST(Search, FindsDeadlocksWhenAsked) {
   EXPECT_EQ(Search(system, options).ending, Ending::kComplete);
 }
 
-TEST(VisitedSet, NumbersStatesInOrder) {
-  VisitedSet set(2, false);
-  std::set<std::pair<Word, Word>> expected;
-  for (Word i = 0; i < 50'000; ++i) {
-    const Word state[2] = {i * i % 1009, i % 13};
-    bool fresh = false;
-    const uint32_t number = set.Insert(state, fresh);
-    EXPECT_EQ(fresh, expected.insert({state[0], state[1]}).second);
-    EXPECT_EQ(set[number][0], state[0]);
-    EXPECT_TRUE(set.Is(state, number));
+// What the definition says, without any batches: the states in the order in which they are met.
+struct Plainly {
+  std::vector<uint64_t> states{0};
+  uint64_t transitions = 1;
+  std::vector<uint64_t> path;
+};
+
+Plainly SearchPlainly(const Counters& system) {
+  Plainly result;
+  std::map<uint64_t, uint64_t> parents{{0, 0}};
+  const auto to = [&](uint64_t state) {
+    for (; state != 0; state = parents[state]) result.path.insert(result.path.begin(), state);
+    result.path.insert(result.path.begin(), 0);
+  };
+  for (size_t i = 0; i < result.states.size() && result.path.empty(); ++i) {
+    const uint64_t from = result.states[i];
+    const Broken broken = system.Successors(Bytes(from), [&](State state) {
+      ++result.transitions;
+      if (!parents.emplace(Value(state), from).second) return true;
+      result.states.push_back(Value(state));
+      if (system.Check(state) >= 0) to(Value(state));
+      return result.path.empty();
+    });
+    if (result.path.empty() && broken.property >= 0) to(from);
   }
-  EXPECT_EQ(set.size(), expected.size());
+  return result;
+}
+
+TEST(Search, FindsTheSameWithAnyNumberOfThreads) {
+  for (const auto& [bad, faulty] : std::vector<std::pair<uint64_t, uint64_t>>{
+           {1'000'000, 1'000'000}, {450, 1'000'000}, {1'000'000, 449}, {450, 449}, {1, 0}, {451, 449}}) {
+    Counters model;
+    model.limit = 300;
+    model.bad = bad;
+    model.faulty = faulty;
+    const Plainly expected = SearchPlainly(model);
+    for (const size_t threads : {1, 2, 5}) {
+      for (const bool compact : {false, true}) {
+        std::vector<Counters> systems(threads, model);
+        std::vector<Counters*> pointers;
+        for (Counters& system : systems) pointers.push_back(&system);
+        SearchOptions options;
+        options.compact = compact;
+        const SearchResult result = Search<Counters>(pointers, options);
+        EXPECT_EQ(result.states, expected.states.size());
+        EXPECT_EQ(result.transitions, expected.transitions);
+        std::vector<uint64_t> path;
+        for (const KeptState& state : result.path) path.push_back(Value(state));
+        EXPECT_EQ(path, expected.path);
+      }
+    }
+  }
+}
+
+TEST(Search, KeepsTheOrderWhereStatesHaveVeryManySuccessors) {
+  // From 0 to each number below a million; from each of those to its double.
+  struct Fan {
+    uint64_t bad;
+    static Broken Initial(const Visit& visit) {
+      visit({});
+      return {};
+    }
+    static Broken Successors(State state, const Visit& visit) {
+      const uint64_t value = Value(state);
+      for (uint64_t next = 1; value == 0 && next < 100'000; ++next) {
+        if (!visit(Bytes(next))) return {};
+      }
+      if (value < 500) visit(Bytes(2'000'000 + value / 2));
+      return {};
+    }
+    int Check(State state) const { return Value(state) == bad ? 0 : -1; }
+    static bool Deadlocked(State) { return false; }
+  };
+  for (const size_t threads : {1, 3}) {
+    std::vector<Fan> systems(threads, Fan{77'777});
+    std::vector<Fan*> pointers;
+    for (Fan& system : systems) pointers.push_back(&system);
+    EXPECT_EQ(Search<Fan>(pointers, {}).states, 77'778U);
+    EXPECT_EQ(Search<Fan>(pointers, {}).transitions, 77'778U);
+    for (Fan& system : systems) system.bad = 2'000'005;
+    const SearchResult result = Search<Fan>(pointers, {});
+    ASSERT_EQ(result.path.size(), 3U);
+    EXPECT_EQ(Value(result.path[1]), 10U);
+    EXPECT_EQ(result.states, 100'000U + 6);
+  }
+}
+
+TEST(StateTable, KnowsWhatItHolds) {
+  for (const bool compact : {false, true}) {
+    StateTable table(3, compact);
+    std::map<KeptState, StateId> expected;
+    for (uint64_t i = 0; i < 200'000; ++i) {
+      KeptState state = Bytes(i * i % 65'537);
+      state.resize(state.size() + i % 13);
+      const auto id = table.Insert(state, HashOf(state), i);
+      const bool fresh = expected.emplace(state, id.value_or(0)).second;
+      EXPECT_EQ(fresh, id.has_value());
+      if (id) EXPECT_EQ(table.Parent(*id), i);
+    }
+    EXPECT_EQ(table.size(), expected.size());
+    for (const auto& [state, id] : expected) {
+      EXPECT_EQ(id >> 32, 3U);
+      EXPECT_TRUE(table.Is(state, id));
+    }
+  }
+}
+
+TEST(StateTable, HoldsHugeStates) {
+  StateTable table(0, false);
+  std::vector<StateId> ids;
+  for (const size_t size : {10, 70'000, 0, 1'000'000, 65'000, 300}) {
+    const KeptState state(size, 7);
+    ids.push_back(table.Insert(state, HashOf(state), kNoState).value());
+    EXPECT_FALSE(table.Insert(state, HashOf(state), kNoState));
+  }
+  for (uint64_t i = 0; i < 5000; ++i) table.Insert(Bytes(i + 1), HashOf(Bytes(i + 1)), i);
+  EXPECT_TRUE(table.Is(KeptState(1'000'000, 7), ids[3]));
+  EXPECT_FALSE(table.Insert(KeptState(1'000'000, 7), HashOf(KeptState(1'000'000, 7)), 1));
+  EXPECT_EQ(table.Parent(ids[1]), kNoState);
+}
+
+TEST(StateTable, ForeseesItsMemory) {
+  StateTable table(0, false);
+  uint64_t next = 1;
+  for (int round = 0; round < 200; ++round) {
+    size_t bytes = 0;
+    const size_t count = 1 + static_cast<size_t>(round) * 7;
+    for (uint64_t i = next; i < next + count; ++i) bytes += Bytes(i).size();
+    const size_t foreseen = table.BytesAfter(count, bytes);
+    for (const uint64_t end = next + count; next < end; ++next)
+      table.Insert(Bytes(next), HashOf(Bytes(next)), 0);
+    EXPECT_LE(table.bytes(), foreseen);
+  }
 }
 
 }  // namespace

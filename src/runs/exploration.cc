@@ -4,7 +4,12 @@
 
 #include <algorithm>
 #include <cfenv>
+#include <memory>
 #include <random>
+#include <span>
+#include <thread>
+#include <type_traits>
+#include <utility>
 
 #include "base/counted.h"
 #include "koord/check/spec_labels.h"
@@ -27,8 +32,8 @@ size_t RoundsOf(const std::vector<koord::semantics::Step>& run) {
 }
 
 // Somebody waits longer than the specification allows.
-void ReportLate(Team& team, System& system, const std::vector<std::vector<koord::semantics::Word>>& path,
-                size_t number, Explored& explored, diag::Diagnostics& diagnostics) {
+void ReportLate(Team& team, System& system, const std::vector<explore::KeptState>& path, size_t number,
+                Explored& explored, diag::Diagnostics& diagnostics) {
   const auto& response = team.responses()[number];
   const auto run = system.Explain(path, {});
   koord::semantics::Responses responses(team);
@@ -49,7 +54,7 @@ void ReportLate(Team& team, System& system, const std::vector<std::vector<koord:
       fmt::format("with {}:\n{}", base::Counted(team.robots(), "robot"), koord::semantics::Tell(team, run)));
 }
 
-void ReportBroken(Team& team, System& system, const std::vector<std::vector<koord::semantics::Word>>& path,
+void ReportBroken(Team& team, System& system, const std::vector<explore::KeptState>& path,
                   const explore::Broken& broken, Explored& explored, diag::Diagnostics& diagnostics) {
   const koord::Model& model = team.model();
   const auto detail = system.detail();
@@ -120,17 +125,18 @@ void ReportBroken(Team& team, System& system, const std::vector<std::vector<koor
 void Walk(Team& team, System& system, const ExplorationOptions& options, Explored& explored,
           diag::Diagnostics& diagnostics) {
   std::mt19937_64 random(options.seed);
-  using State = std::vector<koord::semantics::Word>;
   for (uint64_t walk = 0; walk < options.walks && !explored.broken && !options.stop.StopRequested(); ++walk) {
-    std::vector<State> path;
+    std::vector<explore::KeptState> path;
     for (uint64_t i = 0; i <= options.steps && !options.stop.StopRequested(); ++i) {
-      std::vector<State> next;
-      const explore::Visit visit = [&](std::span<const koord::semantics::Word> state) {
+      std::vector<explore::KeptState> next;
+      int violated = -1;
+      const explore::Visit visit = [&](explore::State state) {
         next.emplace_back(state.begin(), state.end());
-        return explore::Seen::kNew;
+        violated = system.Check(state);
+        return violated < 0;
       };
-      const explore::Broken broken =
-          path.empty() ? system.Initial(visit) : system.Successors(path.back(), visit);
+      explore::Broken broken = path.empty() ? system.Initial(visit) : system.Successors(path.back(), visit);
+      if (violated >= 0) broken = {violated, true};
       if (broken.property >= 0) {
         if (broken.at_visited) path.push_back(next.back());
         return ReportBroken(team, system, path, broken, explored, diagnostics);
@@ -259,6 +265,43 @@ void ReportGaps(const Team& team, const System& system, const std::vector<bool>&
   }
 }
 
+// A team for one thread of a search. The first one tells of what was found.
+struct Member {
+  std::unique_ptr<Team> team;
+  std::unique_ptr<System> system;
+  std::unique_ptr<koord::semantics::TimedSystem> timed;
+};
+
+explore::SearchResult SearchAll(std::span<const Member> members, const ExplorationOptions& options,
+                                const koord::semantics::SharedValues& shared) {
+  const Team& team = *members[0].team;
+  explore::SearchOptions search;
+  if (options.rounds) search.depth = *options.rounds * members[0].system->phases();
+  search.states = options.states;
+  search.memory = options.memory;
+  // Lists and texts, which lie in blocks of powers of two.
+  search.beside = [&] {
+    size_t words = shared.words();
+    for (const Member& member : members) words += 2 * member.team->heap().words_in_use();
+    return words * sizeof(koord::semantics::Word);
+  };
+  search.compact = options.compact;
+  search.deadlocks = options.deadlocks;
+  search.progress = options.progress;
+  search.stop = options.stop;
+  const auto run = [&](auto of) {
+    std::vector<std::remove_reference_t<decltype(*of(members[0]))>*> systems;
+    for (const Member& member : members) systems.push_back(&*of(member));
+    return explore::Search(std::span(std::as_const(systems)), search);
+  };
+  if (team.responses().empty() || options.only)
+    return run([](const Member& m) -> const std::unique_ptr<System>& { return m.system; });
+  auto result =
+      run([](const Member& m) -> const std::unique_ptr<koord::semantics::TimedSystem>& { return m.timed; });
+  result.path = members[0].timed->OfSystem(result.path);
+  return result;
+}
+
 }  // namespace
 
 Explored Explore(const koord::Model& model, size_t robots, const ExplorationOptions& options,
@@ -266,16 +309,30 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
   Explored explored;
   explored.robots = robots;
   explored.unusable = true;
-  const auto team = Team::Make(model, {robots, options.params, options.choices, {}}, diagnostics);
-  if (!team) return explored;
+  const unsigned cores = options.jobs > 0 ? options.jobs : std::max(1u, std::thread::hardware_concurrency());
+  const size_t count = options.walks > 0 ? 1 : cores;
+  koord::semantics::SharedValues shared;
+  std::vector<Member> members(count);
   const size_t before = diagnostics.errors();
-  // Who waits for how long is told by robots' numbers.
-  const bool symmetry = options.symmetry && team->responses().empty();
-  System system(*team, {options.reduce, symmetry, options.only}, diagnostics);
-  koord::semantics::TimedSystem timed(system, *team);
-  explored.symmetric = system.symmetric();
-  ReportUnchecked(*team, explored, diagnostics);
-  if (diagnostics.errors() != before || !ParametersFit(*team, diagnostics)) return explored;
+  for (Member& member : members) {
+    diag::Diagnostics again;  // what the first one has said
+    diag::Diagnostics& said = &member == members.data() ? diagnostics : again;
+    member.team = Team::Make(model, {robots, options.params, options.choices, {}}, said);
+    if (member.team == nullptr) return explored;
+    // Who waits for how long is told by robots' numbers.
+    const bool symmetry = options.symmetry && member.team->responses().empty();
+    member.system = std::make_unique<System>(
+        *member.team, koord::semantics::SystemOptions{options.reduce, symmetry, options.only}, said,
+        count > 1 ? &shared : nullptr);
+    member.timed = std::make_unique<koord::semantics::TimedSystem>(*member.system, *member.team);
+    if (&member != members.data()) continue;
+    explored.symmetric = member.system->symmetric();
+    ReportUnchecked(*member.team, explored, diagnostics);
+    if (diagnostics.errors() != before || !ParametersFit(*member.team, diagnostics)) return explored;
+  }
+  Team* const team = members[0].team.get();
+  System& system = *members[0].system;
+  koord::semantics::TimedSystem& timed = *members[0].timed;
   explored.unusable = false;
   if (options.walks > 0) {
     Walk(*team, system, options, explored, diagnostics);
@@ -287,20 +344,17 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
           .Under("walks do not count rounds");
     }
   } else {
-    explore::SearchOptions search;
-    if (options.rounds) search.depth = *options.rounds * system.phases();
-    search.states = options.states;
-    search.memory = options.memory;
-    // Lists and texts, which lie in blocks of powers of two.
-    search.beside = [&] { return 2 * sizeof(koord::semantics::Word) * team->heap().words_in_use(); };
-    search.compact = options.compact;
-    search.deadlocks = options.deadlocks;
-    search.progress = options.progress;
-    search.stop = options.stop;
-    const bool waits = !team->responses().empty() && !options.only;
-    explored.search = waits ? explore::Search(timed, search) : explore::Search(system, search);
-    if (waits) explored.search.path = timed.OfSystem(explored.search.path);
+    explored.search = SearchAll(members, options, shared);
     explored.rounds = explored.search.depth / system.phases();
+  }
+  std::vector<bool> undefined_responses = timed.responses().undefined();
+  explored.branches = team->machine().marks();
+  for (size_t m = 1; m < count; ++m) {
+    system.TakeIn(*members[m].system);
+    const auto& more = members[m].timed->responses().undefined();
+    for (size_t i = 0; i < more.size(); ++i) undefined_responses[i] = undefined_responses[i] || more[i];
+    const auto& marks = members[m].team->machine().marks();
+    for (size_t i = 0; i < marks.size(); ++i) explored.branches[i] = explored.branches[i] || marks[i];
   }
   const explore::SearchResult& search = explored.search;
   const auto late = timed.ResponseOf(search.broken.property);
@@ -311,9 +365,8 @@ Explored Explore(const koord::Model& model, size_t robots, const ExplorationOpti
   if (search.ending == Ending::kDeadlock) ReportDeadlock(*team, system, explored, diagnostics);
   if (options.walks == 0 && search.initial == 0 && search.ending == Ending::kComplete)
     ReportNoInitialState(*team, explored, diagnostics);
-  ReportGaps(*team, system, timed.responses().undefined(), explored, diagnostics);
+  ReportGaps(*team, system, undefined_responses, explored, diagnostics);
   explored.enabled = system.enabled();
-  explored.branches = team->machine().marks();
   for (const auto& [stmt, otherwise] : team->branches())
     explored.branch_spans.push_back(otherwise && !stmt->has_else ? diag::Span{} : stmt->span);
   return explored;

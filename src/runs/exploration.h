@@ -26,6 +26,7 @@ struct ExplorationOptions {
   bool reduce = true;      ///< see SystemOptions, and so for `symmetry`
   bool symmetry = true;
   std::optional<size_t> only;  ///< check this invariant alone
+  unsigned jobs = 0;           ///< threads of a search; 0: one for each core
   uint64_t walks = 0;          ///< random walks instead of a search
   uint64_t steps = 1000;       ///< the length of a walk
   uint64_t seed = 1;

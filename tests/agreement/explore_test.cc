@@ -38,12 +38,10 @@ Outcome ExploreAll(const Model& model, size_t robots, semantics::SystemOptions o
   outcome.usable = !diagnostics.has_errors();
   if (!states || outcome.search.ending != explore::Ending::kComplete) return outcome;
   // Once more, by hand, to see them.
-  std::vector<std::vector<semantics::Word>> queue;
-  const explore::Visit visit = [&](std::span<const semantics::Word> state) {
-    std::vector<semantics::Word> words(state.begin(), state.end());
-    if (!outcome.states.insert(system.Unpack(words)).second) return explore::Seen::kKnown;
-    queue.push_back(std::move(words));
-    return explore::Seen::kNew;
+  std::vector<explore::KeptState> queue;
+  const explore::Visit visit = [&](explore::State state) {
+    if (outcome.states.insert(system.Unpack(state)).second) queue.emplace_back(state.begin(), state.end());
+    return true;
   };
   system.Initial(visit);
   for (size_t i = 0; i < queue.size(); ++i) {
@@ -149,9 +147,9 @@ TEST(ExploreAgreement, ASimulatedRoundIsOneOfTheRoundsThatAreExplored) {
     ASSERT_NE(team, nullptr);
     System system(*team, {}, diagnostics);
     std::vector<semantics::Word> state;
-    system.Initial([&](std::span<const semantics::Word> packed) {
+    system.Initial([&](explore::State packed) {
       state = system.Unpack(packed);
-      return explore::Seen::kStop;
+      return false;
     });
     if (state.empty()) continue;
     std::mt19937_64 random(seed);

@@ -50,4 +50,15 @@ int Responses::Observe(std::span<const Word> state, std::span<Word> waits, size_
   return late;
 }
 
+int Responses::Late(std::span<const Word> waits) const {
+  size_t number = 0;
+  for (size_t i = 0; i < team_.responses().size(); ++i) {
+    for (size_t r = 0; r < team_.robots(); ++r, ++number) {
+      const uint64_t wait = waits[number / kEach] >> 8 * (number % kEach) & 0xff;
+      if (wait > team_.responses()[i].rounds) return static_cast<int>(i);
+    }
+  }
+  return -1;
+}
+
 }  // namespace rondo::koord::semantics

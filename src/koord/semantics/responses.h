@@ -22,6 +22,9 @@ class Responses {
   /// waited too long; -1 if there is none.
   /// @param robot  receives who waits for it.
   int Observe(std::span<const Word> state, std::span<Word> waits, size_t* robot = nullptr);
+  /// Returns the first response that `Observe` has found to have waited too long, from the words that it left; -1 if there
+  /// is none.
+  int Late(std::span<const Word> waits) const;
   /// Returns, by response, whether it met an operation without a value in some state; there, it was not judged.
   const std::vector<bool>& undefined() const { return undefined_; }
 

@@ -210,10 +210,10 @@ std::string Replay(Team& team, const json& run, const std::string& property) {
         return true;
       });
     } else if (i == 0) {
-      system.Initial([&](std::span<const Word> packed) {
+      system.Initial([&](explore::State packed) {
         next = system.Unpack(packed);
         found = same(next);
-        return found ? explore::Seen::kStop : explore::Seen::kKnown;
+        return !found;
       });
     } else {
       system.StepFrom(here, step["kind"] == "environment", [&](const Step& candidate) {

@@ -8,17 +8,20 @@
 namespace rondo::koord::semantics {
 
 using explore::Broken;
-using explore::Seen;
+using explore::State;
 
-System::System(Team& team, const SystemOptions& options, diag::Diagnostics& diagnostics)
+System::System(Team& team, const SystemOptions& options, diag::Diagnostics& diagnostics, SharedValues* shared)
     : team_(team),
       options_(options),
       environment_(team, diagnostics),
       transition_(team),
-      packing_(team.layout(), 1),
+      exchange_(shared == nullptr
+                    ? std::nullopt
+                    : std::make_optional<HandleExchange>(team.model().types, team.heap(), *shared)),
+      packing_(team.layout(), 1, exchange_ ? &*exchange_ : nullptr),
       symmetric_(options.symmetry && team.robots() > 1 && IsSymmetric(team.model())),
       state_(team.layout().words()),
-      packed_(packing_.words()),
+      checked_(team.layout().words()),
       canonical_(team.layout().words()),
       enabled_(team.events().size()),
       seen_(team.events().size()),
@@ -68,26 +71,22 @@ void System::Canonical(std::span<const Word> state) {
 }
 
 // False: end here.
-bool System::Emit(std::span<const Word> state, Word phase, const explore::Visit& visit, Broken& broken) {
+bool System::Emit(std::span<const Word> state, Word phase, const explore::Visit& visit) {
   std::copy(state.begin(), state.end(), emitted_.begin());
-  if (symmetric_) {
-    Canonical(state);
-    packing_.Pack(canonical_, phase, packed_);
-  } else {
-    packing_.Pack(state, phase, packed_);
-  }
-  switch (visit(packed_)) {
-    case Seen::kKnown:
-      return true;
-    case Seen::kStop:
-      return false;
-    case Seen::kNew:
-      break;
-  }
-  const int violated = Violated(emitted_, phase == 0);
-  if (violated < 0) return true;
-  broken = {violated, true};
-  return false;
+  if (symmetric_) Canonical(state);
+  return visit(packing_.Pack(symmetric_ ? std::span<const Word>(canonical_) : state, phase));
+}
+
+int System::Check(State packed) {
+  Word phase = 0;
+  packing_.Unpack(packed, checked_, phase);
+  return Violated(checked_, phase == 0);
+}
+
+void System::TakeIn(const System& other) {
+  for (size_t e = 0; e < enabled_.size(); ++e) enabled_[e] += other.enabled_[e];
+  for (size_t i = 0; i < undefined_.size(); ++i) undefined_[i] = undefined_[i] || other.undefined_[i];
+  if (other.stuck_ && (!stuck_ || *other.stuck_ < *stuck_)) stuck_ = other.stuck_;
 }
 
 Broken System::Failure(Fault fault, diag::Span span, size_t robot, int event) {
@@ -112,7 +111,7 @@ Broken System::Initial(const explore::Visit& visit) {
       ++refused_;
       return true;
     }
-    return Emit(state, 0, visit, broken);
+    return Emit(state, 0, visit);
   };
   environment_.Declared([&](std::span<const Word> declared) {
     if (team_.inits().empty()) return begin(declared);
@@ -150,7 +149,7 @@ Broken System::Program(std::span<const Word> state, const explore::Visit& visit)
   }
   const Word phase = team_.has_sensors() ? 1 : 0;
   const auto settled = [&](std::span<const Word> after, bool complete) {
-    if (complete) return Emit(after, phase, visit, broken);
+    if (complete) return Emit(after, phase, visit);
     const int violated = Violated(after, false);
     if (violated < 0) return true;
     std::copy(after.begin(), after.end(), emitted_.begin());
@@ -172,26 +171,26 @@ Broken System::Expand(std::span<const Word> state, Word phase, const explore::Vi
     environment_.Move(state, false, [&](std::span<const Word> moved) {
       const int violated = Violated(moved, false);
       if (violated < 0) return true;
-      Emit(moved, 0, visit, broken);
+      Emit(moved, 0, visit);
       broken = {violated, true};
       return false;
     });
     if (broken.property >= 0) return broken;
   }
-  environment_.Move(state, true, [&](std::span<const Word> moved) { return Emit(moved, 0, visit, broken); });
+  environment_.Move(state, true, [&](std::span<const Word> moved) { return Emit(moved, 0, visit); });
   if (environment_.fault() != Fault::kNone)
     return Failure(environment_.fault(), environment_.fault_span(), 0, -1);
   if (environment_.stuck() >= 0 && !stuck_) stuck_ = static_cast<size_t>(environment_.stuck());
   return broken;
 }
 
-Broken System::Successors(std::span<const Word> packed, const explore::Visit& visit) {
+Broken System::Successors(State packed, const explore::Visit& visit) {
   Word phase = 0;
   packing_.Unpack(packed, state_, phase);
   return Expand(state_, phase, visit);
 }
 
-bool System::Deadlocked(std::span<const Word> packed) {
+bool System::Deadlocked(State packed) {
   Word phase = 0;
   packing_.Unpack(packed, state_, phase);
   if (phase != 0) return false;
@@ -216,19 +215,19 @@ bool System::Deadlocked(std::span<const Word> packed) {
 void System::StepFrom(std::span<const Word> state, bool environment,
                       const std::function<bool(const Step&)>& visit) {
   const std::vector<Word> here(state.begin(), state.end());
-  const auto look = [&](std::span<const Word>) {
+  const auto look = [&](State) {
     Step step;
     if (!environment) step = Tell(true);
     step.environment = environment;
     step.state = emitted_;
-    return visit(step) ? Seen::kStop : Seen::kKnown;
+    return !visit(step);
   };
   Expand(here, environment ? 1 : 0, look);
 }
 
 Broken System::Try(std::span<const Word> state) {
   const std::vector<Word> here(state.begin(), state.end());
-  return Expand(here, 0, [](std::span<const Word>) { return Seen::kKnown; });
+  return Expand(here, 0, [](State) { return true; });
 }
 
 bool System::HasPrefix(std::span<const Word> state, const std::function<bool(std::span<const Word>)>& is) {
@@ -242,7 +241,7 @@ bool System::HasPrefix(std::span<const Word> state, const std::function<bool(std
   return found;
 }
 
-std::vector<Word> System::Unpack(std::span<const Word> packed) const {
+std::vector<Word> System::Unpack(State packed) {
   std::vector<Word> state(team_.layout().words());
   Word phase = 0;
   packing_.Unpack(packed, state, phase);
@@ -270,20 +269,20 @@ Step System::Tell(bool complete) const {
   return step;
 }
 
-std::vector<Step> System::Explain(const std::vector<std::vector<Word>>& path, const Broken& broken) {
+std::vector<Step> System::Explain(const std::vector<explore::KeptState>& path, const Broken& broken) {
   std::vector<Step> run;
   std::vector<Word> here;
   for (size_t i = 0; i < path.size(); ++i) {
     bool found = false;
     Step step;
     const Word phase = i == 0 || AtRound(path[i - 1]) ? 0 : 1;
-    const auto look = [&](std::span<const Word> candidate) {
-      if (!std::equal(candidate.begin(), candidate.end(), path[i].begin())) return Seen::kKnown;
+    const auto look = [&](State candidate) {
+      if (!std::ranges::equal(candidate, path[i])) return true;
       found = true;
       if (i > 0 && phase == 0) step = Tell(true);
       step.environment = phase != 0;
       step.state = emitted_;
-      return Seen::kStop;
+      return false;
     };
     if (i == 0)
       Initial(look);

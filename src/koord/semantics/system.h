@@ -40,22 +40,27 @@ struct Step {
 enum class Trouble : uint8_t { kInvariant, kFault, kSummary };
 
 /// Presents a team of robots as a transition system of packed states (`explore::TransitionSystem`). A state
-/// is the start of a round or, if there are sensors, also the end of a program transition; a flag in its
-/// first word tells which.
+/// is the start of a round or, if there are sensors, also the end of a program transition; a flag tells which.
 class System {
  public:
-  System(Team& team, const SystemOptions& options, diag::Diagnostics& diagnostics);
+  /// @param shared  what several systems of one search number the values of their heaps by; nullptr: there is
+  /// only this one.
+  System(Team& team, const SystemOptions& options, diag::Diagnostics& diagnostics,
+         SharedValues* shared = nullptr);
+  System(const System&) = delete;
+  System& operator=(const System&) = delete;
 
-  size_t words() const { return packing_.words(); }
-  /// Visits every initial state, those after `init` that the assumptions allow. Returns what is broken first,
-  /// if anything is; then it ends early.
+  /// Visits every initial state, those after `init` that the assumptions allow. Returns what is broken on the
+  /// way, if anything is; then it ends early.
   explore::Broken Initial(const explore::Visit& visit);
-  /// Visits every state that one transition leads to from `packed`. Returns what is broken first, in such a
-  /// state or on the way, and ends early then.
-  explore::Broken Successors(std::span<const Word> packed, const explore::Visit& visit);
+  /// Visits every state that one transition leads to from `packed`. Returns what is broken on the way, if
+  /// anything is; then it ends early.
+  explore::Broken Successors(explore::State packed, const explore::Visit& visit);
+  /// Returns the first invariant that does not hold in a state; -1 if there is none.
+  int Check(explore::State packed);
   /// Reports whether nothing can change any more from the start of a round: no event is enabled, not all
   /// robots have stopped, and no move of the environment changes a sensor.
-  bool Deadlocked(std::span<const Word> packed);
+  bool Deadlocked(explore::State packed);
 
   /// Reports whether states are taken up to a renaming of robots: it was asked for, there are several robots,
   /// and the program allows it.
@@ -63,7 +68,7 @@ class System {
   /// Returns how many transitions make a round: 2 with sensors, else 1.
   uint32_t phases() const { return team_.has_sensors() ? 2 : 1; }
   /// Reports whether the state is the start of a round.
-  bool AtRound(std::span<const Word> packed) const { return (packed[0] & 1) == 0 || !team_.has_sensors(); }
+  bool AtRound(explore::State packed) const { return packing_.Flags(packed) == 0 || !team_.has_sensors(); }
 
   /// Returns what the number of a broken property means.
   Trouble TroubleOf(int property) const;
@@ -88,7 +93,7 @@ class System {
   /// Returns a run along packed states, told in full. With symmetry, these states are only given up to a
   /// renaming; the run is one of concrete robots. If `broken` is not at the last state, the step that breaks
   /// it is added. Ends early where a state does not follow from the one before.
-  std::vector<Step> Explain(const std::vector<std::vector<Word>>& path, const explore::Broken& broken);
+  std::vector<Step> Explain(const std::vector<explore::KeptState>& path, const explore::Broken& broken);
 
   /// Calls `visit` for each step from `state`, told in full, until it returns true.
   void StepFrom(std::span<const Word> state, bool environment, const std::function<bool(const Step&)>& visit);
@@ -99,15 +104,17 @@ class System {
   bool HasPrefix(std::span<const Word> state, const std::function<bool(std::span<const Word>)>& is);
 
   /// Returns the words of a packed state.
-  std::vector<Word> Unpack(std::span<const Word> packed) const;
+  std::vector<Word> Unpack(explore::State packed);
   /// Returns the first invariant that is defined and does not hold in the state; -1 if there is none.
   int Violated(std::span<const Word> state, bool between_rounds);
 
   /// Returns, by event, in how many expanded states some robot could run it.
   const std::vector<uint64_t>& enabled() const { return enabled_; }
+  /// Adds what another system of the same search met: `enabled`, `undefined`, `stuck`.
+  void TakeIn(const System& other);
 
  private:
-  bool Emit(std::span<const Word> state, Word phase, const explore::Visit& visit, explore::Broken& broken);
+  bool Emit(std::span<const Word> state, Word phase, const explore::Visit& visit);
   explore::Broken Expand(std::span<const Word> state, Word phase, const explore::Visit& visit);
   explore::Broken Program(std::span<const Word> state, const explore::Visit& visit);
   explore::Broken Failure(Fault fault, diag::Span span, size_t robot, int event);
@@ -119,10 +126,11 @@ class System {
   SystemOptions options_;
   Environment environment_;
   ProgramTransition transition_;
+  std::optional<HandleExchange> exchange_;
   Packing packing_;
   bool symmetric_;
   std::vector<Word> state_;
-  std::vector<Word> packed_;
+  std::vector<Word> checked_;  // apart, since searches check states in the middle of listing others
   std::vector<Word> canonical_;
   Detail detail_;
   std::optional<size_t> stuck_;

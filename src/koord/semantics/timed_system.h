@@ -12,27 +12,30 @@ class TimedSystem {
  public:
   TimedSystem(System& system, Team& team);
 
-  size_t words() const { return system_.words() + responses_.words(); }
   explore::Broken Initial(const explore::Visit& visit);
-  explore::Broken Successors(std::span<const Word> packed, const explore::Visit& visit);
-  bool Deadlocked(std::span<const Word> packed) { return system_.Deadlocked(packed.first(system_.words())); }
+  explore::Broken Successors(explore::State packed, const explore::Visit& visit);
+  int Check(explore::State packed);
+  bool Deadlocked(explore::State packed) { return system_.Deadlocked(OfSystem(packed)); }
 
   /// Returns which response a broken property is; nothing if it is one of the system's.
   std::optional<size_t> ResponseOf(int property) const;
   const Responses& responses() const { return responses_; }
   /// Returns the part of each state that the system knows.
-  std::vector<std::vector<Word>> OfSystem(const std::vector<std::vector<Word>>& path) const;
+  std::vector<explore::KeptState> OfSystem(const std::vector<explore::KeptState>& path) const;
 
  private:
   // Visits a state of the system with the waits that lead to it.
-  explore::Seen Extend(std::span<const Word> packed, std::span<const Word> before,
-                       const explore::Visit& visit);
+  bool Extend(explore::State packed, std::span<const Word> before, const explore::Visit& visit);
+  explore::State OfSystem(explore::State packed) const {
+    return packed.first(packed.size() - responses_.words() * sizeof(Word));
+  }
+  std::vector<Word> WaitsOf(explore::State packed) const;
 
   System& system_;
   Responses responses_;
   int first_;  // the number of the first response
-  int late_ = -1;
-  std::vector<Word> extended_;
+  std::vector<Word> waits_;
+  explore::KeptState extended_;
 };
 
 static_assert(explore::TransitionSystem<TimedSystem>);

@@ -170,8 +170,17 @@ bool Propagator::Backward() {
 bool Propagator::Narrow(uint32_t node, const Enclosure& to) {
   needed_[node] = 1;
   if (nodes_[node].kind == Kind::kConstant) return !to.IsEmpty() && to.MayBeEqual(values_[node]);
-  values_[node].Meet(to);
-  return !values_[node].IsEmpty();
+  Enclosure& value = values_[node];
+  if (progress_) {
+    value.Meet(to);
+    return !value.IsEmpty();
+  }
+  const Enclosure before = value;
+  value.Meet(to);
+  if (value.IsEmpty()) return false;
+  // Terms that are tied to each other may get narrow long before any variable does.
+  progress_ = value.Share(before) < 0.95;
+  return true;
 }
 
 bool Propagator::BackwardNode(uint32_t id) {
@@ -274,16 +283,16 @@ bool Propagator::Contract(Box& box, int sweeps) {
   for (size_t v = 0; v < variables_.size(); ++v) values_[variable_nodes_[v]] = box[v];
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     Forward(sweep > 0);
+    progress_ = false;
     if (!Backward()) return false;
-    bool progress = false;
     for (size_t v = 0; v < variables_.size(); ++v) {
       Enclosure& value = values_[variable_nodes_[v]];
       if (arena_.sort_of(variables_[v]) != arena_.Real()) value.Integers();
       if (value.IsEmpty()) return false;
-      progress = progress || value.Share(box[v]) < 0.99;
+      progress_ = progress_ || value.Share(box[v]) < 0.99;
       box[v] = value;
     }
-    if (!progress && sweep > 0) break;
+    if (!progress_ && sweep > 0) break;
   }
   return true;
 }

@@ -108,6 +108,7 @@ class Propagator {
   // Of one contraction.
   std::vector<Enclosure> values_;
   std::vector<char> needed_;
+  bool progress_ = false;  // of one sweep
 };
 
 }  // namespace rondo::solve::certify

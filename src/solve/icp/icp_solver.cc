@@ -59,22 +59,23 @@ class Decision {
       if (proof_ != nullptr) proof_->Contradiction();
       return Status::kUnsat;
     }
-    Prepared rotated = prepared;
-    if (options_.lemmas) AddRotations(arena_, rotated);
-    const Tape tape = BuildTape(arena_, lowered_.variables, rotated);
-    statistics_.nodes = std::max(statistics_.nodes, tape.nodes.size());
-    statistics_.variables = std::max(statistics_.variables, tape.variables.size());
     ++statistics_.cases;
-    Verifier verifier(lowered_, prepared, tape, *search_.kernels);
-    search_.verify = [&](const std::vector<double>& point) {
-      auto solution = verifier.Verify(point);
-      if (solution) solution_ = std::move(*solution);
-      return solution.has_value();
-    };
     const bool split = !prepared.disjunctions.empty();
-    search_.max_boxes = split ? kBoxesBeforeCases : options_.max_boxes;
-    SearchResult result = Search(tape, search_);
-    statistics_.boxes += result.boxes;
+    const bool links = options_.lemmas && !split;
+    Attempt attempt{prepared, {}};
+    if (options_.lemmas) AddRotations(arena_, attempt.rotated, false);
+    SearchResult result = Try(attempt, prepared,
+                              links   ? std::min(kBoxesBeforeLinks, options_.max_boxes)
+                              : split ? kBoxesBeforeCases
+                                      : options_.max_boxes);
+    // More terms make every box cost more: where few boxes do, that would not pay.
+    if (links && result.kind == SearchResult::Kind::kGaveUp && !stop_.StopRequested()) {
+      Attempt linked{prepared, {}};
+      if (AddRotations(arena_, linked.rotated, true)) attempt = std::move(linked);
+      result = Try(attempt, prepared, options_.max_boxes);
+    }
+    const Prepared& rotated = attempt.rotated;
+    const Tape& tape = attempt.tape;
     switch (result.kind) {
       case SearchResult::Kind::kEmpty:
         if (proof_ != nullptr) WriteSearch(rotated, tape, result.tree);
@@ -89,6 +90,28 @@ class Decision {
     if (result.kind == SearchResult::Kind::kGaveUp) return Status::kGaveUp;
     Report(result.box, tape, prepared);
     return Status::kUndecided;
+  }
+
+  // What one search is about.
+  struct Attempt {
+    Prepared rotated;
+    Tape tape;
+  };
+
+  SearchResult Try(Attempt& attempt, const Prepared& prepared, uint64_t max_boxes) {
+    attempt.tape = BuildTape(arena_, lowered_.variables, attempt.rotated);
+    statistics_.nodes = std::max(statistics_.nodes, attempt.tape.nodes.size());
+    statistics_.variables = std::max(statistics_.variables, attempt.tape.variables.size());
+    Verifier verifier(lowered_, prepared, attempt.tape, *search_.kernels);
+    search_.verify = [&](const std::vector<double>& point) {
+      auto solution = verifier.Verify(point);
+      if (solution) solution_ = std::move(*solution);
+      return solution.has_value();
+    };
+    search_.max_boxes = max_boxes;
+    SearchResult result = Search(attempt.tape, search_);
+    statistics_.boxes += result.boxes;
+    return result;
   }
 
   // The box, and what it leaves to the variables that were eliminated.
@@ -150,6 +173,7 @@ class Decision {
   }
 
   static constexpr uint64_t kBoxesBeforeCases = 256;
+  static constexpr uint64_t kBoxesBeforeLinks = 1000;
   Lowered& lowered_;
   expr::Arena& arena_;
   const Options& options_;

@@ -141,8 +141,11 @@ TEST(Layout, EveryWordHasAKind) {
   const TypeId list = model.types.List(record);
   model = Declare({{VariableKind::kLocal, record}, {VariableKind::kLocal, list}}, model);
   const Layout layout(model, 1, {});
-  EXPECT_EQ(layout.block_kinds(),
+  std::vector<WordKind> kinds;
+  for (const Layout::Slot& slot : layout.block_slots()) kinds.push_back(slot.kind);
+  EXPECT_EQ(kinds,
             (std::vector<WordKind>{WordKind::kInt, WordKind::kBool, WordKind::kHandle, WordKind::kBool}));
+  EXPECT_EQ(layout.block_slots()[2].type, list);
 }
 
 }  // namespace

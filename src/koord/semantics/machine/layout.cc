@@ -14,30 +14,41 @@ uint32_t Layout::Width(const lang::TypeTable& types, TypeId type) {
   return width;
 }
 
-void Layout::Kinds(const lang::TypeTable& types, TypeId type, std::vector<WordKind>& kinds) {
+void Layout::Parts(const lang::TypeTable& types, TypeId type, std::vector<TypeId>& parts) {
   const lang::Type& t = types[type];
+  if (t.kind != TypeKind::kRecord && t.kind != TypeKind::kTuple) return parts.push_back(type);
+  for (const TypeId part : t.parts) Parts(types, part, parts);
+}
+
+WordKind Layout::Kind(const lang::TypeTable& types, TypeId part) {
+  const lang::Type& t = types[part];
   switch (t.kind) {
-    case TypeKind::kRecord:
-    case TypeKind::kTuple:
-      for (const TypeId part : t.parts) Kinds(types, part, kinds);
-      return;
     case TypeKind::kBool:
-      return kinds.push_back(WordKind::kBool);
+      return WordKind::kBool;
     case TypeKind::kFloat:
-      return kinds.push_back(WordKind::kFloat);
+      return WordKind::kFloat;
     case TypeKind::kEnum:
-      return kinds.push_back(t.fields.size() <= 256 ? WordKind::kEnum : WordKind::kInt);
+      return t.fields.size() <= 256 ? WordKind::kEnum : WordKind::kInt;
     case TypeKind::kInt:
     case TypeKind::kError:
     case TypeKind::kVariable:
-      return kinds.push_back(WordKind::kInt);
+    case TypeKind::kRecord:
+    case TypeKind::kTuple:
+      return WordKind::kInt;
     case TypeKind::kString:
     case TypeKind::kStream:
     case TypeKind::kArray:
     case TypeKind::kList:
     case TypeKind::kOpaque:
-      return kinds.push_back(WordKind::kHandle);
+      break;
   }
+  return WordKind::kHandle;
+}
+
+void Layout::Kinds(const lang::TypeTable& types, TypeId type, std::vector<WordKind>& kinds) {
+  std::vector<TypeId> parts;
+  Parts(types, type, parts);
+  for (const TypeId part : parts) kinds.push_back(Kind(types, part));
 }
 
 Layout::Layout(const Model& model, size_t robots, const Lengths& lengths) : robots_(robots) {
@@ -63,14 +74,16 @@ Layout::Layout(const Model& model, size_t robots, const Lengths& lengths) : robo
     } else {
       place.at = place.own ? block_ : shared_;
       (place.own ? block_ : shared_) += words;
-      std::vector<WordKind>& kinds = place.own ? block_kinds_ : shared_kinds_;
+      std::vector<TypeId> parts;
       for (uint32_t i = 0; place.exists && i < std::max<uint32_t>(1, place.length); ++i)
-        Kinds(model.types, item, kinds);
+        Parts(model.types, item, parts);
+      for (const TypeId part : parts)
+        (place.own ? block_slots_ : shared_slots_).push_back({Kind(model.types, part), part});
     }
     places_.push_back(place);
   }
   stopped_ = block_++;
-  block_kinds_.push_back(WordKind::kBool);
+  block_slots_.push_back({WordKind::kBool, {}});
 }
 
 }  // namespace rondo::koord::semantics

@@ -42,7 +42,10 @@ class Layout {
 
   /// Returns how many words a value of this type has; arrays, lists and texts are one handle each.
   static uint32_t Width(const lang::TypeTable& types, TypeId type);
-  /// Appends the kind of each word of a value of this type.
+  /// Appends the type of each word of a value of this type: records and tuples are taken apart.
+  static void Parts(const lang::TypeTable& types, TypeId type, std::vector<TypeId>& parts);
+  /// Returns what a word of such a type means, and appends that for each word of a value of any type.
+  static WordKind Kind(const lang::TypeTable& types, TypeId part);
   static void Kinds(const lang::TypeTable& types, TypeId type, std::vector<WordKind>& kinds);
 
   size_t robots() const { return robots_; }
@@ -58,9 +61,14 @@ class Layout {
   uint32_t Address(size_t variable, size_t r) const {
     return places_[variable].own ? block(r) + places_[variable].at : places_[variable].at;
   }
-  /// Returns the kind of each word of shared memory, and of a block.
-  const std::vector<WordKind>& shared_kinds() const { return shared_kinds_; }
-  const std::vector<WordKind>& block_kinds() const { return block_kinds_; }
+  /// Says what one word of a state is.
+  struct Slot {
+    WordKind kind;
+    TypeId type;  ///< of a handle: the list, text, array or value that it stands for
+  };
+  /// Returns what each word of shared memory is, and of a block.
+  const std::vector<Slot>& shared_slots() const { return shared_slots_; }
+  const std::vector<Slot>& block_slots() const { return block_slots_; }
 
  private:
   size_t robots_;
@@ -69,8 +77,8 @@ class Layout {
   uint32_t block_ = 0;
   uint32_t params_ = 0;
   uint32_t stopped_ = 0;
-  std::vector<WordKind> shared_kinds_;
-  std::vector<WordKind> block_kinds_;
+  std::vector<Slot> shared_slots_;
+  std::vector<Slot> block_slots_;
 };
 
 }  // namespace rondo::koord::semantics

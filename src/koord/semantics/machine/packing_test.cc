@@ -22,13 +22,13 @@ class Packed : public testing::Test {
     layout_ = std::make_unique<Layout>(model_, 2, Lengths{});
     packing_ = std::make_unique<Packing>(*layout_, 2);
   }
-  std::vector<Word> Pack(const std::vector<Word>& state, Word flags) {
-    std::vector<Word> packed(packing_->words(), 0xdeadbeef);
-    packing_->Pack(state, flags, packed);
-    return packed;
+  std::vector<uint8_t> Pack(const std::vector<Word>& state, Word flags) {
+    const auto packed = packing_->Pack(state, flags);
+    return {packed.begin(), packed.end()};
   }
   void ExpectRoundTrip(const std::vector<Word>& state, Word flags) {
-    const std::vector<Word> packed = Pack(state, flags);
+    const std::vector<uint8_t> packed = Pack(state, flags);
+    EXPECT_EQ(packing_->Flags(packed), flags);
     std::vector<Word> again(state.size(), 77);
     Word kept = 77;
     packing_->Unpack(packed, again, kept);
@@ -42,7 +42,7 @@ class Packed : public testing::Test {
   std::unique_ptr<Packing> packing_;
 };
 
-TEST_F(Packed, IsSmallerThanTheState) { EXPECT_LT(packing_->words(), layout_->words()); }
+TEST_F(Packed, IsSmallerThanTheState) { EXPECT_LE(Pack(Zero(), 0).size(), layout_->words()); }
 
 TEST_F(Packed, ZeroComesBack) {
   for (Word flags = 0; flags < 4; ++flags) ExpectRoundTrip(Zero(), flags);
@@ -85,7 +85,7 @@ TEST_F(Packed, FieldsDoNotDisturbEachOther) {
 TEST_F(Packed, DifferentStatesDiffer) {
   std::mt19937_64 random(5);
   std::set<std::vector<Word>> states;
-  std::set<std::vector<Word>> packed;
+  std::set<std::vector<uint8_t>> packed;
   const int64_t ints[] = {0, 1, -1, int64_t{1} << 30, int64_t{1} << 31, int64_t{1} << 40};
   const double floats[] = {0, 1, -1, 0.5};
   for (int k = 0; k < 3000; ++k) {
@@ -108,11 +108,48 @@ TEST_F(Packed, TheFlagsAreAPartOfIt) { EXPECT_NE(Pack(Zero(), 0), Pack(Zero(), 1
 TEST_F(Packed, EqualStatesAreEqualAgain) {
   std::vector<Word> state = Zero();
   state[2] = FromFloat(3.5);
-  const std::vector<Word> first = Pack(state, 0);
+  const std::vector<uint8_t> first = Pack(state, 0);
   state[2] = FromFloat(4.5);
   Pack(state, 0);
   state[2] = FromFloat(3.5);
   EXPECT_EQ(Pack(state, 0), first);
+}
+
+TEST_F(Packed, ListsAreEqualAcrossHeaps) {
+  auto& types = model_.types;
+  const TypeId inner = types.List(types.integer());
+  const TypeId outer = types.List(types.Tuple({inner, types.string()}));
+  Model model = model_;
+  model.variables = {{VariableKind::kAllwrite, "v", "", outer, {}, {}, -1},
+                     {VariableKind::kAllwrite, "w", "", inner, {}, {}, -1}};
+  const Layout layout(model, 1, Lengths{});
+  SharedValues shared;
+  Heap heaps[2];
+  heaps[1].InternText("other numbers from the start");
+  std::vector<std::vector<uint8_t>> packed;
+  for (int order = 0; order < 2; ++order) {
+    Heap& heap = heaps[order];
+    HandleExchange exchange(model.types, heap, shared);
+    Packing packing(layout, 1, &exchange);
+    if (order == 1) heap.Intern(std::vector<Word>{7, 7});
+    const Word one = heap.Intern(std::vector<Word>{1, 2, 3});
+    const Word text = heap.InternText("hello");
+    const Word list = heap.Intern(std::vector<Word>{one, text, 0, text});
+    const std::vector<Word> state{list, heap.Intern(std::vector<Word>{one, text}), 0};
+    const auto bytes = packing.Pack(state, 0);
+    packed.emplace_back(bytes.begin(), bytes.end());
+    std::vector<Word> again(3, 99);
+    Word flags = 9;
+    packing.Unpack(packed.back(), again, flags);
+    EXPECT_EQ(again, state);
+    // What the other heap has written.
+    packing.Unpack(packed.front(), again, flags);
+    const auto items = heap[again[0]];
+    ASSERT_EQ(items.size(), 4U);
+    EXPECT_EQ(std::vector<Word>(heap[items[0]].begin(), heap[items[0]].end()), (std::vector<Word>{1, 2, 3}));
+    EXPECT_EQ(heap.Text(items[3]), "hello");
+  }
+  EXPECT_NE(packed[0], packed[1]);  // of `w`, whose ints are handles of the one heap only by chance
 }
 
 }  // namespace

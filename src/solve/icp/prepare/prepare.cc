@@ -344,7 +344,7 @@ Prepared Prepare(Arena& arena, const std::unordered_map<TermId, Variable>& varia
   return result;
 }
 
-void AddRotations(Arena& arena, Prepared& prepared) {
+bool AddRotations(Arena& arena, Prepared& prepared, bool links) {
   Rotations rotations(arena);
   std::map<TermId, Range> ranges;
   for (const auto& [term, range] : prepared.ranges) {
@@ -357,7 +357,10 @@ void AddRotations(Arena& arena, Prepared& prepared) {
   }
   prepared.ranges = std::move(ranges);
   for (TermId& d : prepared.disjunctions) d = rotations.Rewrite(d);
+  const std::vector<Lemma> ties = links ? rotations.Links() : std::vector<Lemma>();
   prepared.lemmas = rotations.Lemmas();
+  prepared.lemmas.insert(prepared.lemmas.end(), ties.begin(), ties.end());
+  return !ties.empty();
 }
 
 std::vector<TermId> Conjuncts(Arena& arena, const Prepared& prepared) {

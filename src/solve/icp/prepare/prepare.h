@@ -52,7 +52,9 @@ Prepared Prepare(expr::Arena& arena, const std::unordered_map<TermId, Variable>&
                  Proof* proof = nullptr);
 
 /// Rewrites the sums in `prepared` over rotated frames and adds their lemmas; see Rotations.
-void AddRotations(expr::Arena& arena, Prepared& prepared);
+/// @param links  whether sums are tied to the coordinates in frames, too: fewer boxes, and each costs more.
+/// Returns whether there are such ties.
+bool AddRotations(expr::Arena& arena, Prepared& prepared, bool links);
 
 /// Returns everything in `prepared` as formulas, lemmas apart.
 std::vector<TermId> Conjuncts(expr::Arena& arena, const Prepared& prepared);

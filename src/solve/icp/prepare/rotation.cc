@@ -63,12 +63,13 @@ Polynomial Shallow(expr::Arena& arena, expr::TermId sum) {
 }  // namespace
 
 expr::TermId Rotations::Rewrite(TermId formula) {
-  return expr::Transform(arena_, formula, [this](TermId t) {
+  rewritten_.push_back(expr::Transform(arena_, formula, [this](TermId t) {
     if (arena_.op(t) == Op::kAdd) return RewriteSum(t);
     // The square of a sum is the square of its negative, too.
     const bool square = arena_.op(t) == Op::kMul && arena_.arg(t, 0) == arena_.arg(t, 1);
     return square && arena_.op(arena_.arg(t, 0)) == Op::kAdd ? Square(arena_.arg(t, 0)) : t;
-  });
+  }));
+  return rewritten_.back();
 }
 
 // A lemma must hold even where a partial function has no value: there are none in it.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <map>
 #include <optional>
 #include <utility>
@@ -33,6 +34,10 @@ class Rotations {
 
   /// Returns what ties the frames to each other: of each vector of which both coordinates were met.
   std::vector<Lemma> Lemmas();
+  /// Returns what ties the sums of what was rewritten to coordinates, where these say it more shortly than the
+  /// sums do, and adds frames for that, of which `Lemmas` tells: lengths of vectors become lengths of the
+  /// vectors that they are turned into, one frame after the other.
+  std::vector<Lemma> Links();
 
  private:
   using Rational = expr::Rational;
@@ -40,6 +45,14 @@ class Rotations {
   using Complex = std::pair<Rational, Rational>;
   /// Is A + i B, by monomial.
   using Vector = std::map<expr::Monomial, Complex>;
+
+  /// Is common * (a vector, turned by an angle) + rest: its first coordinate there.
+  struct Split {
+    TermId angle;
+    expr::Monomial common;
+    Vector vector;
+    expr::Polynomial rest;
+  };
 
   struct Frame {
     Vector vector;
@@ -63,8 +76,22 @@ class Rotations {
   void Translations(const std::vector<Norm>& norms, std::vector<Lemma>& lemmas);
   TermId Part(const Vector& vector, bool imaginary);
 
+  // In rotation_links.cc.
+  std::optional<expr::Polynomial> Over(TermId term);
+  std::optional<expr::Polynomial> NewOver(TermId term);
+  std::optional<Split> Outermost(const expr::Polynomial& polynomial);
+  std::optional<Split> SplitBy(const expr::Polynomial& polynomial, TermId angle);
+  expr::Polynomial Turned(Split split);
+  void Turn(expr::Polynomial& sum);
+  bool TurnTwice(expr::Polynomial& sum);
+  static std::pair<expr::Polynomial, expr::Polynomial> PartsOf(const Vector& vector);
+  void Shorten(expr::Polynomial& polynomial);
+  Lemma Link(TermId sum, const expr::Polynomial& polynomial);
+
   expr::Arena& arena_;
-  std::map<TermId, std::vector<Frame>> frames_;  // by angle
+  std::map<TermId, std::deque<Frame>> frames_;  // by angle
+  std::vector<TermId> rewritten_;
+  std::map<TermId, std::optional<expr::Polynomial>> over_;
 };
 
 }  // namespace rondo::solve::icp

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "expr/numeric.h"
+#include "expr/polynomial.h"
 
 namespace rondo::solve::icp {
 namespace {
@@ -94,6 +95,50 @@ TEST_F(Turned, FramesOfAChainAreTied) {
   const std::vector<Lemma> lemmas = rotations.Lemmas();
   EXPECT_TRUE(std::ranges::any_of(lemmas, [](const Lemma& l) { return l.parts.size() == 3; }));
   ExpectLemmasHold(lemmas);
+}
+
+// What is left of the length of a vector in a chain of frames once one coordinate in the last frame is taken away, with
+// everything multiplied out: the square of the other coordinate.
+TEST_F(Turned, LengthsAreFollowedThroughTheFrames) {
+  const TermId p = In(u_, x_, y_)[0];
+  const TermId q = In(u_, x_, y_)[1];
+  const TermId last = In(w_, arena_.Add(p, Number(2)), q)[0];
+  const TermId along = ToTerm(arena_, Expand(arena_, last, 100).value());
+  const TermId length =
+      arena_.Add({arena_.Mul(x_, x_), arena_.Mul(y_, y_), Number(4), arena_.Mul(Number(4), p)});
+  const TermId rest = arena_.Sub(length, arena_.Mul(along, along));
+  Rotations rotations(arena_);
+  rotations.Rewrite(arena_.And(arena_.Le(along, Number(1)), arena_.Le(rest, Number(2))));
+  const std::vector<Lemma> links = rotations.Links();
+  ExpectLemmasHold(links);
+  ExpectLemmasHold(rotations.Lemmas());
+  const auto is_square = [&](const Lemma& link) {
+    const TermId t = link.parts.back().second;
+    return link.parts.size() == 2 && link.constant.IsZero() && arena_.op(t) == expr::Op::kMul &&
+           arena_.arg(t, 0) == arena_.arg(t, 1);
+  };
+  EXPECT_TRUE(std::ranges::any_of(links, is_square));
+}
+
+TEST_F(Turned, WhatIsTurnedByOneAngleTwiceIsAVector) {
+  const TermId c = Cos(u_), s = Sin(u_);
+  const TermId twice = arena_.Sub(arena_.Mul(c, c), arena_.Mul(s, s));
+  const TermId f =
+      arena_.Add({arena_.Mul(x_, twice), arena_.Mul(Number(2), arena_.Mul(y_, arena_.Mul(s, c))), w_});
+  Rotations rotations(arena_);
+  rotations.Rewrite(arena_.Le(f, Number(1)));
+  const std::vector<Lemma> links = rotations.Links();
+  ASSERT_EQ(links.size(), 1U);
+  EXPECT_EQ(links[0].parts.size(), 3U);  // the sum, one coordinate, w
+  ExpectLemmasHold(links);
+  ExpectLemmasHold(rotations.Lemmas());
+}
+
+TEST_F(Turned, AngleSumsAreNoVectors) {
+  Rotations rotations(arena_);
+  const TermId sum = arena_.Sub(arena_.Mul(Cos(u_), Cos(w_)), arena_.Mul(Sin(u_), Sin(w_)));
+  rotations.Rewrite(arena_.Le(arena_.Add(sum, x_), Number(1)));
+  EXPECT_TRUE(rotations.Links().empty());
 }
 
 TEST_F(Turned, PartialFunctionsStayAsTheyAre) {
