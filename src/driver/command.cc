@@ -54,6 +54,10 @@ CommandOption& CommandOption::Excludes(const CommandOption& other) {
 
 Command::Command(CLI::App& app, const char* name, const char* what) : verb_(app.add_subcommand(name, what)) {}
 
+void Command::TakeRest() { verb_->prefix_command(); }
+
+std::vector<std::string> Command::Rest() const { return verb_->remaining(); }
+
 Command Command::Verb(const char* name, const char* what) {
   verb_->require_subcommand(1);
   return Command(verb_->add_subcommand(name, what));

@@ -3,6 +3,7 @@
 #include <functional>
 #include <initializer_list>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -53,6 +54,10 @@ class Command {
   CommandOption Option(const char* name, T& value, const char* what);
   /// Adds an option without a value, which sets `value` to true.
   CommandOption Flag(const char* name, bool& value, const char* what);
+  /// Takes all words behind the first one that is no option, and that one, whatever they are.
+  void TakeRest();
+  /// Returns these words.
+  std::vector<std::string> Rest() const;
   /// Sets what the help says below the options: examples, and what the exit status means.
   void Footer(const char* text);
   /// Sets what runs when the verb is called, after its options are set.

@@ -25,11 +25,11 @@ namespace {
 
 /// In the order of the help.
 constexpr void (*kVerbs[])(CLI::App&, ExitStatus&) = {
-    AddNewVerb,        AddCheckVerb,  AddFormatVerb,  AddProveVerb,  AddExploreVerb, AddSimulateVerb,
-    AddRunVerb,        AddLaunchVerb, AddBuildVerb,   AddDoctorVerb, AddKeysVerb,    AddReplayVerb,
-    AddCampaignVerb,   AddPlotVerb,   AddViewVerb,    AddReachVerb,  AddInferVerb,   AddGraphVerb,
-    AddProjectVerb,    AddSolveVerb,  AddCertifyVerb, AddLspVerb,    AddExplainVerb, AddAstVerb,
-    AddCompletionVerb, AddHelpVerb,   AddVersionVerb,
+    AddNewVerb,      AddCheckVerb,      AddFormatVerb,  AddProveVerb,   AddExploreVerb, AddSimulateVerb,
+    AddRunVerb,      AddLaunchVerb,     AddBuildVerb,   AddDoctorVerb,  AddKeysVerb,    AddReplayVerb,
+    AddCampaignVerb, AddPlotVerb,       AddViewVerb,    AddReachVerb,   AddInferVerb,   AddGraphVerb,
+    AddProjectVerb,  AddSolveVerb,      AddCertifyVerb, AddWatchVerb,   AddLspVerb,     AddExplainVerb,
+    AddAstVerb,      AddCompletionVerb, AddHelpVerb,    AddVersionVerb,
 };
 
 // A reader that went away is no error; a full disk is.

@@ -33,6 +33,7 @@ void AddReachVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddSolveVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddCertifyVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddLspVerb(CLI::App& app, verdict::ExitStatus& status);
+void AddWatchVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddExplainVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddCompletionVerb(CLI::App& app, verdict::ExitStatus& status);
 void AddHelpVerb(CLI::App& app, verdict::ExitStatus& status);

@@ -3,16 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
-#include <set>
 
 #include "base/version.h"
 #include "diag/render.h"
-#include "lsp/outline.h"
+#include "lsp/protocol.h"
 #include "lsp/uris.h"
 #include "workspace/checks.h"
-#include "workspace/module_files.h"
 
 namespace rondo::lsp {
 
@@ -22,45 +19,9 @@ using nlohmann::json;
 namespace {
 
 constexpr int kParseError = -32700, kInvalidRequest = -32600, kMethodNotFound = -32601,
-              kInvalidParameters = -32602, kNotInitialized = -32002;
-
-std::string Plain(const std::string& path) { return fs::path(path).lexically_normal().string(); }
-
-bool IsSource(const std::string& path) {
-  const std::string extension = fs::path(path).extension().string();
-  return extension == ".koord" || extension == ".spec" || workspace::IsModuleFile(path);
-}
-
-json ToJson(Position position) { return {{"line", position.line}, {"character", position.character}}; }
-
-Position PositionIn(const json& j) { return {j.at("line").get<size_t>(), j.at("character").get<size_t>()}; }
-
-std::pair<Position, Position> RangeIn(const json& j) {
-  return {PositionIn(j.at("start")), PositionIn(j.at("end"))};
-}
-
-bool Before(Position a, Position b) {
-  return std::pair(a.line, a.character) < std::pair(b.line, b.character);
-}
-
-// Ranges that only touch meet, too: cursors stand between characters.
-bool Meet(const json& a, const json& b) {
-  const auto [a0, a1] = RangeIn(a);
-  const auto [b0, b1] = RangeIn(b);
-  return !Before(a1, b0) && !Before(b1, a0);
-}
+              kInvalidParameters = -32602, kNotInitialized = -32002, kRequestFailed = -32803;
 
 int SeverityOf(std::string_view severity) { return severity == "error" ? 1 : severity == "warning" ? 2 : 3; }
-
-bool InWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
-
-// The bytes of the word around a place.
-std::pair<size_t, size_t> WordAround(std::string_view text, size_t at) {
-  size_t begin = at, end = at;
-  while (begin > 0 && InWord(text[begin - 1])) --begin;
-  while (end < text.size() && InWord(text[end])) ++end;
-  return {begin, end};
-}
 
 // What stands below a message, on lines of its own.
 std::string WithMore(std::string message, const std::vector<std::string>& notes,
@@ -133,6 +94,13 @@ void Server::Request(const json& id, const std::string& method, const json& para
   if (method == "textDocument/hover") return Answer(id, Hover(parameters));
   if (method == "textDocument/definition") return Answer(id, Definition(parameters));
   if (method == "textDocument/completion") return Answer(id, Complete(parameters));
+  if (method == "textDocument/references") return Answer(id, References(parameters));
+  if (method == "textDocument/documentHighlight") return Answer(id, Highlights(parameters));
+  if (method == "textDocument/prepareRename") return Answer(id, NameAt(parameters));
+  if (method == "textDocument/rename") {
+    auto renamed = Rename(parameters);
+    return renamed.ok() ? Answer(id, renamed.value()) : Refuse(id, kRequestFailed, renamed.error().message);
+  }
   Refuse(id, kMethodNotFound, fmt::format("`{}` is not known", method));
 }
 
@@ -162,6 +130,9 @@ json Server::Initialize(const json& parameters) {
             {"documentSymbolProvider", true},
             {"codeActionProvider", {{"codeActionKinds", {"quickfix"}}}},
             {"definitionProvider", true},
+            {"referencesProvider", true},
+            {"documentHighlightProvider", true},
+            {"renameProvider", {{"prepareProvider", true}}},
             {"completionProvider", json::object()},
             {"hoverProvider", true}}},
           {"serverInfo", {{"name", "rondo"}, {"version", std::string(base::Version())}}}};
@@ -461,123 +432,6 @@ void Server::Proofs() {
   Publish(root);
   Notify("rondo/verification",
          {{"uri", UriOf(root)}, {"version", verifier_.version()}, {"items", checked.items}});
-}
-
-// -- requests
-
-json Server::Format(const json& parameters) {
-  const Document* document = Find(parameters);
-  if (document == nullptr || !IsSource(document->path)) return nullptr;
-  const std::string extension = fs::path(document->path).extension().string();
-  if (extension == ".chor" || extension == ".rosl") return nullptr;
-  workspace::Session session;
-  Prepare(session);
-  const auto formatted = workspace::FormattedFile(document->path, session);
-  if (!formatted) return nullptr;
-  if (*formatted == document->text) return json::array();
-  return {{{"range",
-            {{"start", lsp::ToJson(Position())},
-             {"end", lsp::ToJson(PositionOf(document->text, document->text.size(), encoding_))}}},
-           {"newText", *formatted}}};
-}
-
-json Server::Symbols(const json& parameters) {
-  const Document* document = Find(parameters);
-  if (document == nullptr || !IsSource(document->path)) return json::array();
-  workspace::Session session;
-  Prepare(session);
-  json symbols = json::array();
-  for (const Symbol& s : OutlineOf(document->path, session)) {
-    const json range = RangeOf(session, s.span);
-    symbols.push_back(
-        {{"name", s.name}, {"kind", static_cast<int>(s.kind)}, {"range", range}, {"selectionRange", range}});
-  }
-  return symbols;
-}
-
-json Server::Actions(const json& parameters) {
-  json actions = json::array();
-  const std::string uri = UriOf(Plain(PathOf(parameters.at("textDocument").at("uri").get<std::string>())));
-  for (const auto& [root, checked] : checked_) {
-    const auto it = checked.fixes.find(uri);
-    if (it == checked.fixes.end()) continue;
-    for (const json& action : it->second) {
-      if (Meet(action["diagnostics"][0]["range"], parameters.at("range"))) actions.push_back(action);
-    }
-  }
-  return actions;
-}
-
-json Server::Hover(const json& parameters) {
-  const Document* document = Find(parameters);
-  if (document == nullptr) return nullptr;
-  const json here{{"start", parameters.at("position")}, {"end", parameters.at("position")}};
-  const std::string uri = UriOf(document->path);
-  std::string text;
-  const auto add = [&](const std::string& more) { text += (text.empty() ? "" : "\n\n---\n\n") + more; };
-  for (const auto& [root, checked] : checked_) {
-    for (const json& item : checked.items) {
-      if (item["uri"] == uri && Meet(item["range"], here))
-        add(fmt::format("`{}`: **{}** ({:.2f} s)", item["id"].get<std::string>(),
-                        item["state"].get<std::string>(), item["seconds"].get<double>()));
-    }
-    for (const auto* lists : {&checked.diagnostics, &checked.proofs}) {
-      const auto it = lists->find(uri);
-      if (it == lists->end()) continue;
-      for (const json& d : it->second) {
-        if (!Meet(d["range"], here)) continue;
-        const auto kind = d["code"].get<std::string>();
-        for (const diag::KindInfo& info : diag::AllKinds()) {
-          if (info.id == kind) add(fmt::format("**{}**: {}\n\n{}", kind, info.summary, info.explanation));
-        }
-      }
-    }
-  }
-  if (text.empty()) return nullptr;
-  return {{"contents", {{"kind", "markdown"}, {"value", text}}}};
-}
-
-// What a name means that a file declares, or one that belongs to it. Names within bodies are not looked for.
-json Server::Definition(const json& parameters) {
-  const Document* document = Find(parameters);
-  if (document == nullptr || !IsSource(document->path)) return json::array();
-  const size_t at = OffsetOf(document->text, PositionIn(parameters.at("position")), encoding_);
-  const auto [begin, end] = WordAround(document->text, at);
-  const std::string word = document->text.substr(begin, end - begin);
-  // Everything that belongs together is read by a check.
-  workspace::Session whole;
-  Prepare(whole);
-  workspace::CheckFile(RootOf(document->path), whole);
-  json found = json::array();
-  for (size_t f = 0; f < whole.sources.size() && !word.empty(); ++f) {
-    const std::string path(whole.sources.path(diag::FileId(f)));
-    workspace::Session session;
-    Prepare(session);
-    for (const Symbol& s : OutlineOf(path, session)) {
-      if (s.name == word) found.push_back({{"uri", UriOf(Plain(path))}, {"range", RangeOf(session, s.span)}});
-    }
-  }
-  return found;
-}
-
-// The words of the file, but the one that is being written.
-json Server::Complete(const json& parameters) {
-  constexpr size_t kMost = 2000;
-  const Document* document = Find(parameters);
-  if (document == nullptr || !IsSource(document->path)) return json::array();
-  const std::string& text = document->text;
-  const size_t here =
-      WordAround(text, OffsetOf(text, PositionIn(parameters.at("position")), encoding_)).first;
-  std::set<std::string> words;
-  for (size_t at = 0; at < text.size() && words.size() < kMost;) {
-    const auto [begin, end] = WordAround(text, at);
-    const bool name = end > begin + 1 && std::isdigit(static_cast<unsigned char>(text[begin])) == 0;
-    if (name && begin != here) words.insert(text.substr(begin, end - begin));
-    at = std::max(end, at) + 1;
-  }
-  json items = json::array();
-  for (const std::string& word : words) items.push_back({{"label", word}, {"kind", 1}});
-  return items;
 }
 
 }  // namespace rondo::lsp

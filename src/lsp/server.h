@@ -4,8 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/result.h"
 #include "lsp/positions.h"
 #include "lsp/verifier.h"
 #include "workspace/session.h"
@@ -67,6 +69,18 @@ class Server {
   Json Hover(const Json& parameters);
   Json Definition(const Json& parameters);
   Json Complete(const Json& parameters);
+  Json References(const Json& parameters);
+  Json Highlights(const Json& parameters);
+  Json NameAt(const Json& parameters);
+  base::Result<Json> Rename(const Json& parameters);
+
+  std::string WordAt(const Document& document, const Json& parameters) const;
+  /// Returns the paths of everything that a check of a root reads.
+  std::vector<std::string> FilesOf(const std::string& root) const;
+  /// Returns where a word stands in these files, by path: bytes.
+  std::map<std::string, std::vector<std::pair<size_t, size_t>>> PlacesOf(const std::string& root,
+                                                                         const std::string& word) const;
+  Json RangeOf(const std::string& text, std::pair<size_t, size_t> bytes) const;
 
   /// Returns which file is checked when this one changes: the program of a specification.
   std::string RootOf(const std::string& path) const;

@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import select
 import shutil
 import signal
@@ -143,12 +144,44 @@ def typing(folder):
     check("where a name is defined", [d["uri"] for d in found] == [path.as_uri()] and found[0]["range"]["start"]["line"] < at["line"], found)
     words = {i["label"] for i in editor.ask("textDocument/completion", {"textDocument": {"uri": path.as_uri()}, "position": at})}
     check("words", {"TargetUpdate", "Motion", "invariant"} <= words, words)
+    renaming(editor, path)
     check("no such method", editor.ask("textDocument/nonsense", {}).get("code") == -32601)
     check("parameters that are none", editor.ask("textDocument/hover", {"textDocument": 3}).get("code") == -32602)
     check("a file that nobody opened", editor.ask("textDocument/hover", {"textDocument": {"uri": "file:///none.koord"}, "position": {"line": 0, "character": 0}}) is None)
     editor.tell("textDocument/didClose", {"textDocument": {"uri": path.as_uri()}})
     check("closed: nothing is said any more", editor.wait(lambda: (p := editor.last("textDocument/publishDiagnostics", path.as_uri())) and p["diagnostics"] == [] and "version" not in p), editor.heard[-1:])
     check("goodbye", editor.close() == 0)
+
+
+def changed(text, edits):
+    """A text of ASCII with the edits of a rename."""
+    lines = text.splitlines(keepends=True)
+    start = lambda p: sum(map(len, lines[:p["line"]])) + p["character"]
+    for edit in sorted(edits, key=lambda e: -start(e["range"]["start"])):
+        text = text[:start(edit["range"]["start"])] + edit["newText"] + text[start(edit["range"]["end"]):]
+    return text
+
+
+def renaming(editor, path):
+    """References and renaming in LineForm, which is open."""
+    here = {"textDocument": {"uri": path.as_uri()}, "position": place(LINEFORM, "x[pid] = Motion")["start"]}
+    count = len(re.findall(r"\bx\b", re.sub("#.*", "", LINEFORM)))
+    found = editor.ask("textDocument/references", {**here, "context": {"includeDeclaration": True}})
+    check("references", len(found) == count and all(f["uri"] == path.as_uri() for f in found), len(found), count)
+    fewer = editor.ask("textDocument/references", {**here, "context": {"includeDeclaration": False}})
+    check("references but the declaration", len(fewer) == count - 1, len(fewer))
+    check("highlights", len(editor.ask("textDocument/documentHighlight", here)) == count)
+    span = editor.ask("textDocument/prepareRename", here)
+    check("what would be renamed", span["end"]["character"] - span["start"]["character"] == 1, span)
+    edit = editor.ask("textDocument/rename", {**here, "newName": "spot"})
+    text = changed(LINEFORM, edit["changes"][path.as_uri()])
+    check("renamed", len(re.findall(r"\bspot\b", text)) == count and re.sub(r"\bspot\b", "x", text) == LINEFORM, edit)
+    for name, wrong in [("target", "something else"), ("1x", "no name"), ("", "no name"), ("a b", "no name"), ("atomic", "no program")]:
+        refused = editor.ask("textDocument/rename", {**here, "newName": name})
+        check(f"not to `{name}`", wrong in refused.get("message", ""), refused)
+    word = {**here, "position": place(LINEFORM, "eff:")["start"]}
+    refused = editor.ask("textDocument/rename", {**word, "newName": "effect"})
+    check("a word of the language", "no program" in refused.get("message", ""), refused)
 
 
 def files(folder):
@@ -168,6 +201,10 @@ def files(folder):
     editor.change(spec, 2, {"text": promise})
     found = editor.ask("textDocument/definition", {"textDocument": {"uri": spec.as_uri()}, "position": place(promise, "shared_paths")["start"]})
     check("defined in the program", [d["uri"] for d in found] == [program.as_uri()], found)
+    edit = editor.ask("textDocument/rename", {"textDocument": {"uri": spec.as_uri()}, "position": place(promise, "shared_paths")["start"], "newName": "routes"})
+    check("renamed in both files", set(edit.get("changes", {})) == {program.as_uri(), spec.as_uri()}, edit)
+    items = editor.ask("textDocument/completion", {"textDocument": {"uri": spec.as_uri()}, "position": {"line": 0, "character": 0}})
+    check("names of the program complete the specification", {"label": "shared_paths", "kind": 6} in items, items[:5])
     check("mended", all(d["severity"] > 1 for d in editor.diagnostics(spec.as_uri(), 2)))
     motion, model = folder / "w.rondo", folder / "m.rondo"
     model.write_text("robot R { state x: length in [0 m, 1 m]  motion Idle() interruptible [0, inf) {} }\n")
