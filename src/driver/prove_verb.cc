@@ -143,6 +143,7 @@ ExitStatus Run(const Options& options) {
     if (options.robots > 0) request.robots = static_cast<size_t>(options.robots);
     request.file = options.file;
     request.spec = options.spec;
+    request.exploration.jobs = options.jobs;
     const InterruptScope interrupt(request.exploration.stop);
     request.exploration.progress = [&](const explore::SearchOptions::Progress& p) {
       line.Show(fmt::format("[reach] {} states, frontier {}, depth {}", p.states, p.frontier, p.depth));
