@@ -129,14 +129,16 @@ void Announce(const std::vector<std::string>& words) {
 ExitStatus Watch(const std::vector<std::string>& words) {
   base::StopToken stop;
   const InterruptScope interrupt(stop);
-  while (!stop.cancelled()) {
-    std::set<std::string> files = FilesOf(words);
+  // Who was read once is watched from then on: a file may be away for a moment.
+  std::set<std::string> files;
+  while (!stop.cancelled() && std::ferror(stdout) == 0) {
+    files.merge(FilesOf(words));
     const Looks before = LookAtAll(files);
     Announce(words);
     std::fflush(stdout);
     Child child(words);
     bool said = false;
-    while (!stop.cancelled() && LookAtAll(files) == before) {
+    while (!stop.cancelled() && std::ferror(stdout) == 0 && LookAtAll(files) == before) {
       std::this_thread::sleep_for(kLook);
       if (said || !child.Ended()) continue;
       said = true;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -60,8 +61,9 @@ struct SearchResult {
   uint32_t depth = 0;        ///< of the deepest state, in transitions
   uint64_t initial = 0;      ///< initial states, each once
   double seconds = 0;
-  size_t bytes = 0;  ///< of states, index, predecessors and lists, as allocated
-  Broken broken;     ///< which property, if the ending is kBroken
+  size_t bytes = 0;              ///< of states, index, predecessors and lists, as allocated
+  Broken broken;                 ///< which property, if the ending is kBroken
+  std::vector<uint64_t> marked;  ///< by bit of `Marks`: of how many states whose successors were listed
   /// The states from an initial one to the state that is broken or dead, or whose successors break something.
   /// As few as there can be, since the search is breadth first.
   std::vector<KeptState> path;
@@ -75,7 +77,10 @@ class Searcher {
       : systems_(systems),
         options_(options),
         crew_(static_cast<unsigned>(systems.size())),
-        visited_(options.compact) {}
+        visited_(options.compact),
+        width_(systems[0]->Marks().size()) {
+    result_.marked.resize(64 * width_);
+  }
 
   SearchResult Run() {
     List([&](const explore::Visit& visit) { return systems_[0]->Initial(visit); }, kNoState);
@@ -138,6 +143,7 @@ class Searcher {
     const size_t tasks = (size + task - 1) / task;
     if (lists_.size() < tasks) lists_.resize(tasks);
     listed_.assign(tasks, {});
+    marks_.assign(size * width_, 0);
     crew_.Run(tasks, [&](size_t member, size_t t) {
       listed_[t] = Expand(member, t * task, std::min(size, (t + 1) * task), lists_[t]);
     });
@@ -181,6 +187,7 @@ class Searcher {
         list.KeepFirst(before);
         return {Cut::kMany, i, source, {}};
       }
+      std::ranges::copy(system.Marks(), marks_.begin() + static_cast<std::ptrdiff_t>(i * width_));
       if (broken.property >= 0) return {Cut::kBroken, i, source, broken};
     }
     return {};
@@ -193,6 +200,7 @@ class Searcher {
     parents_.assign(1, from);
     Candidates& piece = lists_[0];
     piece.Clear();
+    marks_.assign(width_, 0);  // counted once, at the end
     bool stopped = false;
     const Broken broken = list([&](State next) {
       piece.Add(next, 0);
@@ -202,6 +210,7 @@ class Searcher {
       piece.Clear();
       return !done_;
     });
+    if (from != kNoState && !stopped) Count(systems_[0]->Marks());
     if (done_) return;
     if (stopped) return End(Ending::kStopped);
     Settle({&piece, 1}, broken.property >= 0 ? Listed{Cut::kBroken, 0, 0, broken} : Listed{});
@@ -219,14 +228,19 @@ class Searcher {
       newest = fresh.id;
       if (fresh.property >= 0) {
         result_.transitions += fresh.order + 1;
+        CountFirst(fresh.source + 1);
         return Break({fresh.property, true}, fresh.id);
       }
       next_.Add(fresh.id, fresh.state);
       if (result_.states < options_.states) continue;
       result_.transitions += fresh.order + 1;
+      CountFirst(fresh.source + 1);
       return End(Ending::kStates);
     }
     result_.transitions += listed;
+    CountFirst(last.cut == Cut::kNone     ? parents_.size()
+               : last.cut == Cut::kBroken ? last.source + 1
+                                          : last.source);
     if (visited_.full()) return End(Ending::kStates);
     switch (last.cut) {
       case Cut::kNone:
@@ -240,6 +254,17 @@ class Searcher {
       case Cut::kBroken:
         return Break(last.broken, last.broken.at_visited ? newest : parents_[last.source]);
     }
+  }
+
+  void Count(std::span<const uint64_t> marks) {
+    for (size_t w = 0; w < width_; ++w) {
+      for (uint64_t left = marks[w]; left != 0; left &= left - 1)
+        ++result_.marked[64 * w + static_cast<size_t>(std::countr_zero(left))];
+    }
+  }
+  // What was marked in the first states of the batch.
+  void CountFirst(size_t states) {
+    for (size_t i = 0; i < states; ++i) Count(std::span<const uint64_t>(marks_).subspan(i * width_, width_));
   }
 
   void Break(const Broken& broken, StateId state) {
@@ -303,6 +328,8 @@ class Searcher {
   std::vector<Candidates> lists_;
   std::vector<Listed> listed_;
   std::vector<StateId> parents_;
+  size_t width_;                 // of marks
+  std::vector<uint64_t> marks_;  // by number of the state in the batch
   KeptState state_;
   StateId bad_ = kNoState;
   bool done_ = false;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
 #include <utility>
 #include <vector>
@@ -31,15 +32,18 @@ struct Counters {
     visit({});
     return {};
   }
-  Broken Successors(State state, const Visit& visit) const {
+  Broken Successors(State state, const Visit& visit) {
     const uint64_t a = Value(state) / 1000;
     const uint64_t b = Value(state) % 1000;
+    marks[0] = (a < limit ? 1 : 0) | (b % 2 == 0 ? 2 : 0);
     if (a < limit && !visit(Bytes((a + 1) * 1000 + b))) return {};
     if (a + b >= faulty) return {1, false};
     if (b < limit) visit(Bytes(a * 1000 + b + 1));
     return {};
   }
   int Check(State state) const { return Value(state) / 1000 + Value(state) % 1000 >= bad ? 0 : -1; }
+  std::array<uint64_t, 1> marks{};
+  std::span<const uint64_t> Marks() const { return marks; }
   bool Deadlocked(State state) const { return !ends && Value(state) == limit * 1000 + limit; }
 };
 
@@ -118,6 +122,7 @@ TEST(Search, TellsHowFarItIsInTheMiddleOfAState) {
       return {};
     }
     static int Check(State) { return -1; }
+    static std::span<const uint64_t> Marks() { return {}; }
     static bool Deadlocked(State) { return false; }
     bool told = false;
   } system;
@@ -143,10 +148,11 @@ TEST(Search, FindsDeadlocksWhenAsked) {
 struct Plainly {
   std::vector<uint64_t> states{0};
   uint64_t transitions = 1;
+  std::array<uint64_t, 2> marked{};
   std::vector<uint64_t> path;
 };
 
-Plainly SearchPlainly(const Counters& system) {
+Plainly SearchPlainly(Counters system) {
   Plainly result;
   std::map<uint64_t, uint64_t> parents{{0, 0}};
   const auto to = [&](uint64_t state) {
@@ -162,6 +168,7 @@ Plainly SearchPlainly(const Counters& system) {
       if (system.Check(state) >= 0) to(Value(state));
       return result.path.empty();
     });
+    for (size_t bit = 0; bit < 2; ++bit) result.marked[bit] += system.marks[0] >> bit & 1;
     if (result.path.empty() && broken.property >= 0) to(from);
   }
   return result;
@@ -185,6 +192,8 @@ TEST(Search, FindsTheSameWithAnyNumberOfThreads) {
         const SearchResult result = Search<Counters>(pointers, options);
         EXPECT_EQ(result.states, expected.states.size());
         EXPECT_EQ(result.transitions, expected.transitions);
+        EXPECT_EQ(result.marked[0], expected.marked[0]);
+        EXPECT_EQ(result.marked[1], expected.marked[1]);
         std::vector<uint64_t> path;
         for (const KeptState& state : result.path) path.push_back(Value(state));
         EXPECT_EQ(path, expected.path);
@@ -210,6 +219,7 @@ TEST(Search, KeepsTheOrderWhereStatesHaveVeryManySuccessors) {
       return {};
     }
     int Check(State state) const { return Value(state) == bad ? 0 : -1; }
+    static std::span<const uint64_t> Marks() { return {}; }
     static bool Deadlocked(State) { return false; }
   };
   for (const size_t threads : {1, 3}) {
@@ -236,7 +246,9 @@ TEST(StateTable, KnowsWhatItHolds) {
       const auto id = table.Insert(state, HashOf(state), i);
       const bool fresh = expected.emplace(state, id.value_or(0)).second;
       EXPECT_EQ(fresh, id.has_value());
-      if (id) EXPECT_EQ(table.Parent(*id), i);
+      if (id) {
+        EXPECT_EQ(table.Parent(*id), i);
+      }
     }
     EXPECT_EQ(table.size(), expected.size());
     for (const auto& [state, id] : expected) {

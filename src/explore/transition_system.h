@@ -30,13 +30,16 @@ struct Broken {
 /// Is what `Search` can explore. The system calls `visit` for each initial state, or each successor, and ends
 /// early when something on the way is broken or `visit` says so; `Check` looks at the states themselves. It
 /// must list the same states in the same order each time, because counterexamples are found again from their
-/// numbers. One system serves one thread.
+/// numbers. One system serves one thread. What `Marks` returns is counted over the states whose successors were
+/// listed.
 template <typename S>
 concept TransitionSystem = requires(S& system, State state, const Visit& visit) {
   { system.Initial(visit) } -> std::same_as<Broken>;
   { system.Successors(state, visit) } -> std::same_as<Broken>;
   /// Returns which property the state breaks; negative: none.
   { system.Check(state) } -> std::same_as<int>;
+  /// Returns bits that say what was met when the successors of a state were listed last; always as many words.
+  { system.Marks() } -> std::convertible_to<std::span<const uint64_t>>;
   /// Reports whether nothing will ever change from here, though that is not an end that the system declares.
   { system.Deadlocked(state) } -> std::same_as<bool>;
 };

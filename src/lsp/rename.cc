@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "lsp/names.h"
 #include "lsp/protocol.h"
@@ -22,20 +23,30 @@ std::string Server::WordAt(const Document& document, const json& parameters) con
   return document.text.substr(begin, end - begin);
 }
 
-std::vector<std::string> Server::FilesOf(const std::string& root) const {
+std::set<std::string> Server::FilesOf(const std::string& root) const {
   workspace::Session session;
   Prepare(session);
   workspace::CheckFile(root, session);
-  std::vector<std::string> files;
+  std::set<std::string> files;
   for (size_t f = 0; f < session.sources.size(); ++f)
-    files.push_back(Plain(std::string(session.sources.path(diag::FileId(f)))));
+    files.insert(Plain(std::string(session.sources.path(diag::FileId(f)))));
   return files;
 }
 
+std::set<std::string> Server::RootsWith(const std::string& path) const {
+  std::set<std::string> roots{RootOf(path)};
+  for (const auto& [root, checked] : checked_) {
+    if (std::ranges::find(checked.files, path) != checked.files.end()) roots.insert(root);
+  }
+  return roots;
+}
+
 std::map<std::string, std::vector<std::pair<size_t, size_t>>> Server::PlacesOf(
-    const std::string& root, const std::string& word) const {
+    const std::string& of, const std::string& word) const {
   std::map<std::string, std::vector<std::pair<size_t, size_t>>> places;
-  for (const std::string& path : FilesOf(root)) {
+  std::set<std::string> files;
+  for (const std::string& root : RootsWith(of)) files.merge(FilesOf(root));
+  for (const std::string& path : files) {
     diag::SourceSet sources;
     const diag::FileId file = sources.Add(path, TextOf(path));
     for (const diag::Span& span : Occurrences(sources, file, word))
@@ -55,7 +66,7 @@ json Server::References(const json& parameters) {
   if (document == nullptr || !IsSource(document->path)) return found;
   const bool declarations = parameters.value("/context/includeDeclaration"_json_pointer, true);
   const json defined = declarations ? json::array() : Definition(parameters);
-  for (const auto& [path, places] : PlacesOf(RootOf(document->path), WordAt(*document, parameters))) {
+  for (const auto& [path, places] : PlacesOf(document->path, WordAt(*document, parameters))) {
     const std::string text = TextOf(path), uri = UriOf(path);
     std::vector<json> declared;  // of a declaration, the first place is its own name
     for (const auto& place : places) {
@@ -94,22 +105,25 @@ json Server::NameAt(const json& parameters) {
 }
 
 // Every place of the word, in all files that belong together, gets the other name, which stands nowhere in them: so no two
-// names become one, and nothing else changes its meaning. What is a word of the language does not check afterwards.
+// names become one. Only what these files declare is renamed: not words of the language, built-in functions, units, nor the
+// ports that a program shares with a model.
 base::Result<json> Server::Rename(const json& parameters) {
   const Document* document = Find(parameters);
   if (document == nullptr || !IsSource(document->path)) return base::Error{"this file is not open"};
-  const std::string root = RootOf(document->path), word = WordAt(*document, parameters);
+  const std::string word = WordAt(*document, parameters);
+  const std::set<std::string> roots = RootsWith(document->path);
   const auto name = parameters.at("newName").get<std::string>();
   if (!IsName(word)) return base::Error{"no name stands here"};
   if (!IsName(name)) return base::Error{fmt::format("`{}` is no name", name)};
-  const auto places = PlacesOf(root, word);
-  if (places.empty()) return base::Error{fmt::format("`{}` is no name here", word)};
-  if (!PlacesOf(root, name).empty())
+  const auto places = PlacesOf(document->path, word);
+  if (Definition(parameters).empty() || places.empty())
+    return base::Error{fmt::format("`{}` is nothing that is declared by itself in these files", word)};
+  if (!PlacesOf(document->path, name).empty())
     return base::Error{fmt::format("`{}` is the name of something else", name)};
   json changes = json::object();
   std::map<std::string, std::string> texts;
   for (const auto& [path, spans] : places) {
-    const bool own = path == root || RootOf(path) == root || At(path) != nullptr;
+    const bool own = RootOf(path) == RootOf(document->path) || At(path) != nullptr;
     if (!own)
       return base::Error{fmt::format(
           "`{}` stands in `{}`, too, which may belong to others: open that file first", word, path)};
@@ -122,7 +136,7 @@ base::Result<json> Server::Rename(const json& parameters) {
     }
     changes[UriOf(path)] = edits;
   }
-  const auto errors = [&](bool after) {
+  const auto said = [&](bool after) {
     workspace::Session session;
     Prepare(session);
     const auto before = session.read;
@@ -130,10 +144,11 @@ base::Result<json> Server::Rename(const json& parameters) {
       const auto text = texts.find(Plain(path));
       return after && text != texts.end() ? base::Result<std::string>(text->second) : before(path);
     };
-    workspace::CheckFile(root, session);
-    return session.diagnostics.errors();
+    for (const std::string& root : roots) workspace::CheckFile(root, session);
+    return session.diagnostics.all().size();
   };
-  if (errors(true) > errors(false))
+  // Warnings count, too: that a name means nothing any more may be one.
+  if (said(true) > said(false))
     return base::Error{fmt::format("with `{}` in place of `{}`, this is no program any more", name, word)};
   return json{{"changes", changes}};
 }

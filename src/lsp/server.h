@@ -3,6 +3,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -76,9 +77,11 @@ class Server {
 
   std::string WordAt(const Document& document, const Json& parameters) const;
   /// Returns the paths of everything that a check of a root reads.
-  std::vector<std::string> FilesOf(const std::string& root) const;
-  /// Returns where a word stands in these files, by path: bytes.
-  std::map<std::string, std::vector<std::pair<size_t, size_t>>> PlacesOf(const std::string& root,
+  std::set<std::string> FilesOf(const std::string& root) const;
+  /// Returns the roots that are known to read a file, and its own.
+  std::set<std::string> RootsWith(const std::string& path) const;
+  /// Returns where a word stands in everything that is read with a file, by path: bytes.
+  std::map<std::string, std::vector<std::pair<size_t, size_t>>> PlacesOf(const std::string& of,
                                                                          const std::string& word) const;
   Json RangeOf(const std::string& text, std::pair<size_t, size_t> bytes) const;
 

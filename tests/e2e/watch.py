@@ -63,7 +63,10 @@ def main():
         said = watch.wait("-- waiting")
         check("mended", said and "error" not in said, said)
         program.unlink()
-        check("the file goes away", watch.wait("-- waiting"), watch.text)
+        check("the file goes away", watch.wait("-- waiting for a change of d.koord"), watch.text)
+        time.sleep(1)
+        program.write_text("nonsense\n")
+        check("and is there again", watch.wait("-- rondo check", "error", "-- waiting"), watch.text)
         check("ended", watch.end() == 0)
 
         program.write_text((ROOT / "examples/koord/lineform.koord").read_text())
@@ -85,6 +88,18 @@ def main():
         check("again", watch.wait("-- rondo explore"), watch.text)
         began = time.monotonic()
         check("ended by Ctrl-C", watch.end() == 0 and time.monotonic() - began < 20)
+
+        # Nobody listens any more.
+        watch = Watch(folder, "check", "d.koord")
+        check("somebody listens", watch.wait("-- waiting"), watch.text)
+        watch.process.stdout.close()
+        for k in range(20):
+            program.write_text(f"# {k}\n")
+            time.sleep(0.3)
+            if watch.process.poll() is not None:
+                break
+        check("ended when nobody listens", watch.process.poll() is not None)
+        watch.process.kill()
 
         for arguments, wrong in [([], "what should be watched"), (["nonsense"], "is no file"), (["prove", "none.koord"], "nothing in this command is a file")]:
             done = subprocess.run([RONDO, "watch", *arguments], capture_output=True, text=True, cwd=folder)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "koord/semantics/machine/values.h"
 #include "koord/semantics/symmetry.h"
 
 namespace rondo::koord::semantics {
@@ -23,8 +24,7 @@ System::System(Team& team, const SystemOptions& options, diag::Diagnostics& diag
       state_(team.layout().words()),
       checked_(team.layout().words()),
       canonical_(team.layout().words()),
-      enabled_(team.events().size()),
-      seen_(team.events().size()),
+      marks_((team.events().size() + 63) / 64),
       undefined_(team.invariants().size()),
       emitted_(team.layout().words()) {
   team.machine().CheckSummaries(true);
@@ -63,7 +63,14 @@ void System::Canonical(std::span<const Word> state) {
   std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
     const Word* x = state.data() + layout.block(a);
     const Word* y = state.data() + layout.block(b);
-    return std::lexicographical_compare(x, x + width, y, y + width);
+    // Handles differ from heap to heap: lists are told apart by what they hold.
+    for (uint32_t i = 0; i < width; ++i) {
+      if (x[i] == y[i]) continue;
+      const Layout::Slot& slot = layout.block_slots()[i];
+      if (slot.kind != WordKind::kHandle) return x[i] < y[i];
+      return Compare(team_.model().types, team_.heap(), slot.type, x[i], y[i]) < 0;
+    }
+    return false;
   });
   std::copy_n(state.begin(), layout.shared_words(), canonical_.begin());
   for (size_t r = 0; r < order.size(); ++r)
@@ -84,7 +91,6 @@ int System::Check(State packed) {
 }
 
 void System::TakeIn(const System& other) {
-  for (size_t e = 0; e < enabled_.size(); ++e) enabled_[e] += other.enabled_[e];
   for (size_t i = 0; i < undefined_.size(); ++i) undefined_[i] = undefined_[i] || other.undefined_[i];
   if (other.stuck_ && (!stuck_ || *other.stuck_ < *stuck_)) stuck_ = other.stuck_;
 }
@@ -140,12 +146,8 @@ Broken System::Program(std::span<const Word> state, const explore::Visit& visit)
   size_t robot = 0;
   if (const Effect* failed = transition_.Failed(&robot))
     return Failure(failed->fault, failed->fault_span, robot, static_cast<int>(failed->event));
-  std::fill(seen_.begin(), seen_.end(), false);
   for (size_t r = 0; r < team_.robots(); ++r) {
-    for (const Effect& e : transition_.Of(r)) {
-      if (!seen_[e.event]) ++enabled_[e.event];
-      seen_[e.event] = true;
-    }
+    for (const Effect& e : transition_.Of(r)) marks_[e.event / 64] |= uint64_t{1} << e.event % 64;
   }
   const Word phase = team_.has_sensors() ? 1 : 0;
   const auto settled = [&](std::span<const Word> after, bool complete) {
@@ -164,6 +166,7 @@ Broken System::Program(std::span<const Word> state, const explore::Visit& visit)
 }
 
 Broken System::Expand(std::span<const Word> state, Word phase, const explore::Visit& visit) {
+  std::ranges::fill(marks_, 0);
   if (phase == 0) return Program(state, visit);
   Broken broken;
   // Before the round is over there may be states that it cannot end in; only what breaks something in them counts.
@@ -180,7 +183,10 @@ Broken System::Expand(std::span<const Word> state, Word phase, const explore::Vi
   environment_.Move(state, true, [&](std::span<const Word> moved) { return Emit(moved, 0, visit); });
   if (environment_.fault() != Fault::kNone)
     return Failure(environment_.fault(), environment_.fault_span(), 0, -1);
-  if (environment_.stuck() >= 0 && !stuck_) stuck_ = static_cast<size_t>(environment_.stuck());
+  if (environment_.stuck() >= 0) {
+    const auto robot = static_cast<size_t>(environment_.stuck());
+    stuck_ = std::min(stuck_.value_or(robot), robot);
+  }
   return broken;
 }
 

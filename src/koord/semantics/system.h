@@ -81,7 +81,7 @@ class System {
     int summary = -1;
   };
   const Detail& detail() const { return detail_; }
-  /// Returns a robot for whose sensors the assumptions allowed no declared values in some state; nothing if
+  /// Returns the first robot for whose sensors the assumptions allowed no declared values in some state; nothing if
   /// there was always one.
   const std::optional<size_t>& stuck() const { return stuck_; }
   /// Returns, by invariant, whether it met an operation without a value in some state; there, it was not
@@ -108,9 +108,9 @@ class System {
   /// Returns the first invariant that is defined and does not hold in the state; -1 if there is none.
   int Violated(std::span<const Word> state, bool between_rounds);
 
-  /// Returns, by event, in how many expanded states some robot could run it.
-  const std::vector<uint64_t>& enabled() const { return enabled_; }
-  /// Adds what another system of the same search met: `enabled`, `undefined`, `stuck`.
+  /// Returns a bit for each event: whether some robot could run it in the state that was expanded last.
+  std::span<const uint64_t> Marks() const { return marks_; }
+  /// Adds what another system of the same search met: `undefined`, `stuck`.
   void TakeIn(const System& other);
 
  private:
@@ -135,8 +135,7 @@ class System {
   Detail detail_;
   std::optional<size_t> stuck_;
   uint64_t refused_ = 0;
-  std::vector<uint64_t> enabled_;
-  std::vector<bool> seen_;  // events that are enabled in the state at hand
+  std::vector<uint64_t> marks_;
   std::vector<bool> undefined_;
   std::vector<Word> emitted_;  // the last state, before symmetry
 };

@@ -185,6 +185,31 @@ TEST(System, CountsStatesUpToRenaming) {
   EXPECT_EQ(Explore(*team, {true, true, {}}).result.states, 10U);
 }
 
+// Handles of lists differ from heap to heap; up to renaming, states do not.
+TEST(System, CountsListsUpToRenamingWithAnyNumberOfThreads) {
+  Loaded loaded(
+      "allread:\n    List<int> own[N_sys]\nGo:\n    eff:\n        if len(own[pid]) < 2:\n"
+      "            own[pid].append(any int in 0..3)\n        else:\n            own[pid].clear()\n");
+  TeamOptions options;
+  options.robots = 3;
+  for (const size_t threads : {1, 2, 5}) {
+    SharedValues shared;
+    diag::Diagnostics diagnostics;
+    std::vector<std::unique_ptr<Team>> teams;
+    std::vector<std::unique_ptr<System>> systems;
+    std::vector<System*> pointers;
+    for (size_t i = 0; i < threads; ++i) {
+      teams.push_back(loaded.MakeTeam(options));
+      systems.push_back(std::make_unique<System>(*teams.back(), SystemOptions{}, diagnostics, &shared));
+      pointers.push_back(systems.back().get());
+    }
+    const auto result = explore::Search<System>(pointers, {});
+    EXPECT_EQ(result.states, 1771U);
+    EXPECT_EQ(result.transitions, 32510U);
+    EXPECT_EQ(result.marked[0], 1771U);
+  }
+}
+
 TEST(System, ATeamThatCanDoNothingIsDeadlocked) {
   Loaded loaded("local:\n    int n = 0\nUp:\n    pre: n < 3\n    eff:\n        n = n + 1\n");
   const auto team = loaded.MakeTeam();

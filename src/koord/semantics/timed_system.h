@@ -15,6 +15,7 @@ class TimedSystem {
   explore::Broken Initial(const explore::Visit& visit);
   explore::Broken Successors(explore::State packed, const explore::Visit& visit);
   int Check(explore::State packed);
+  std::span<const uint64_t> Marks() const { return system_.Marks(); }
   bool Deadlocked(explore::State packed) { return system_.Deadlocked(OfSystem(packed)); }
 
   /// Returns which response a broken property is; nothing if it is one of the system's.

@@ -52,7 +52,7 @@ class Decision {
 
   Status Decide(std::vector<TermId> conjuncts, const Definitions& definitions) {
     if (stop_.StopRequested()) return Status::kGaveUp;
-    Prepared prepared = Prepare(arena_, lowered_.variables, std::move(conjuncts), definitions, proof_);
+    Prepared prepared = Prepare(arena_, lowered_.variables, std::move(conjuncts), definitions, proof_, stop_);
     if (!prepared.contradiction) BoundAngles(arena_, lowered_.variables, prepared, proof_);
     if (prepared.contradiction) {
       ++statistics_.exact;
@@ -63,15 +63,14 @@ class Decision {
     const bool split = !prepared.disjunctions.empty();
     const bool links = options_.lemmas && !split;
     Attempt attempt{prepared, {}};
-    if (options_.lemmas) AddRotations(arena_, attempt.rotated, false);
+    if (options_.lemmas) AddRotations(arena_, attempt.rotated, false, stop_);
     SearchResult result = Try(attempt, prepared,
-                              links   ? std::min(kBoxesBeforeLinks, options_.max_boxes)
+                              links   ? std::min(options_.boxes_before_links, options_.max_boxes)
                               : split ? kBoxesBeforeCases
                                       : options_.max_boxes);
-    // More terms make every box cost more: where few boxes do, that would not pay.
     if (links && result.kind == SearchResult::Kind::kGaveUp && !stop_.StopRequested()) {
       Attempt linked{prepared, {}};
-      if (AddRotations(arena_, linked.rotated, true)) attempt = std::move(linked);
+      if (AddRotations(arena_, linked.rotated, true, stop_)) attempt = std::move(linked);
       result = Try(attempt, prepared, options_.max_boxes);
     }
     const Prepared& rotated = attempt.rotated;
@@ -173,7 +172,6 @@ class Decision {
   }
 
   static constexpr uint64_t kBoxesBeforeCases = 256;
-  static constexpr uint64_t kBoxesBeforeLinks = 1000;
   Lowered& lowered_;
   expr::Arena& arena_;
   const Options& options_;

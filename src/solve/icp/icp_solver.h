@@ -17,7 +17,10 @@ struct Options {
   double widest = std::numeric_limits<double>::infinity();
   /// How many boxes one question may take; then the answer is `Unknown`.
   uint64_t max_boxes = UINT64_MAX;
-  bool lemmas = true;                          ///< look for rotations; off only to measure what that brings
+  bool lemmas = true;  ///< look for rotations; off only to measure what that brings
+  /// How many boxes of one case are tried before sums are tied to rotated frames: more terms make every box
+  /// cost more.
+  uint64_t boxes_before_links = 1000;
   const interval::Kernels* kernels = nullptr;  ///< none: the best of this machine
 };
 

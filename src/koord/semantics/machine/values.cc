@@ -251,4 +251,21 @@ void MarkHandles(const lang::TypeTable& types, Heap& heap, TypeId id, std::span<
   }
 }
 
+int Compare(const lang::TypeTable& types, const Heap& heap, TypeId type, Word a, Word b) {
+  if (a == b) return 0;
+  if (Layout::Kind(types, type) != WordKind::kHandle) return a < b ? -1 : 1;
+  const auto x = heap[a], y = heap[b];
+  if (x.size() != y.size()) return x.size() < y.size() ? -1 : 1;
+  const lang::Type& t = types[type];
+  const bool items = t.kind == TypeKind::kList || t.kind == TypeKind::kArray;
+  std::vector<TypeId> parts;
+  if (items) Layout::Parts(types, t.parts[0], parts);
+  for (size_t i = 0; i < x.size(); ++i) {
+    const int order = items ? Compare(types, heap, parts[i % parts.size()], x[i], y[i])
+                            : (x[i] == y[i] ? 0 : (x[i] < y[i] ? -1 : 1));
+    if (order != 0) return order;
+  }
+  return 0;
+}
+
 }  // namespace rondo::koord::semantics

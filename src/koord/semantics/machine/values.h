@@ -32,6 +32,10 @@ nlohmann::json ToJson(const lang::TypeTable& types, const Heap& heap, const Layo
 std::optional<std::vector<Word>> FromJson(const lang::TypeTable& types, Heap& heap, TypeId type,
                                           const nlohmann::json& json);
 
+/// Orders values of one type by what they are, whatever handles their lists and texts have: negative if the first comes
+/// first, 0 if they are equal.
+int Compare(const lang::TypeTable& types, const Heap& heap, TypeId type, Word a, Word b);
+
 /// Calls `mark` for each handle in a value, and in what it refers to.
 void MarkHandles(const lang::TypeTable& types, Heap& heap, TypeId type, std::span<const Word> words);
 

@@ -56,8 +56,8 @@ constexpr size_t kMostDigits = 1'000;
 class Preparation {
  public:
   Preparation(Arena& arena, const std::unordered_map<TermId, Variable>& variables, Prepared& out,
-              Proof* proof)
-      : arena_(arena), variables_(variables), out_(out), proof_(proof) {}
+              Proof* proof, const base::StopToken& stop)
+      : arena_(arena), variables_(variables), out_(out), proof_(proof), stop_(stop) {}
 
   void Run(std::vector<TermId> conjuncts) {
     while (true) {
@@ -182,6 +182,7 @@ class Preparation {
 
   TermId Condensed(TermId term) {
     if (const auto it = condensed_.find(term); it != condensed_.end()) return it->second;
+    if (stop_.StopRequested()) return term;
     const TermId result = Condense(arena_, term);
     condensed_.emplace(term, result);
     // However its comparison is scaled.
@@ -329,6 +330,7 @@ class Preparation {
   const std::unordered_map<TermId, Variable>& variables_;
   Prepared& out_;
   Proof* proof_;
+  const base::StopToken& stop_;
   std::vector<TermId> todo_;
   std::unordered_map<TermId, TermId> condensed_;  // by Condense; its results are taken as they are
 };
@@ -337,15 +339,15 @@ class Preparation {
 
 Prepared Prepare(Arena& arena, const std::unordered_map<TermId, Variable>& variables,
                  std::vector<TermId> conjuncts, std::vector<std::pair<TermId, TermId>> definitions,
-                 Proof* proof) {
+                 Proof* proof, const base::StopToken& stop) {
   Prepared result;
   result.definitions = std::move(definitions);
-  Preparation(arena, variables, result, proof).Run(std::move(conjuncts));
+  Preparation(arena, variables, result, proof, stop).Run(std::move(conjuncts));
   return result;
 }
 
-bool AddRotations(Arena& arena, Prepared& prepared, bool links) {
-  Rotations rotations(arena);
+bool AddRotations(Arena& arena, Prepared& prepared, bool links, const base::StopToken& stop) {
+  Rotations rotations(arena, stop);
   std::map<TermId, Range> ranges;
   for (const auto& [term, range] : prepared.ranges) {
     const TermId rewritten = rotations.Rewrite(term);

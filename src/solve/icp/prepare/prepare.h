@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/stop.h"
 #include "solve/icp/prepare/literal.h"
 #include "solve/icp/prepare/lower.h"
 #include "solve/icp/prepare/proof.h"
@@ -46,15 +47,16 @@ struct Prepared {
 /// result extends to one of the conjuncts by the definitions, and every solution of the conjuncts arises so.
 /// Uses linear equations to eliminate variables, turns bounds of square roots into bounds of their arguments,
 /// splits vanishing sums of squares, and merges all comparisons of one term; everything in exact arithmetic.
-/// `proof`, if there is one, gets the steps that a checker cannot see by itself.
+/// `proof`, if there is one, gets the steps that a checker cannot see by itself. Once `stop` asks for it, what could be
+/// written more shortly is left as it is.
 Prepared Prepare(expr::Arena& arena, const std::unordered_map<TermId, Variable>& variables,
                  std::vector<TermId> conjuncts, std::vector<std::pair<TermId, TermId>> definitions,
-                 Proof* proof = nullptr);
+                 Proof* proof = nullptr, const base::StopToken& stop = {});
 
 /// Rewrites the sums in `prepared` over rotated frames and adds their lemmas; see Rotations.
 /// @param links  whether sums are tied to the coordinates in frames, too: fewer boxes, and each costs more.
-/// Returns whether there are such ties.
-bool AddRotations(expr::Arena& arena, Prepared& prepared, bool links);
+/// Returns whether there are such ties. Sums are left as they are once `stop` asks for it.
+bool AddRotations(expr::Arena& arena, Prepared& prepared, bool links, const base::StopToken& stop);
 
 /// Returns everything in `prepared` as formulas, lemmas apart.
 std::vector<TermId> Conjuncts(expr::Arena& arena, const Prepared& prepared);

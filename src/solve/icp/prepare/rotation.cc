@@ -86,7 +86,7 @@ bool Rotations::IsTotal(TermId term) const {
 }
 
 expr::TermId Rotations::RewriteSum(TermId sum) {
-  if (!IsTotal(sum)) return sum;
+  if (stop_.StopRequested() || !IsTotal(sum)) return sum;
   // As it is written, with sums as factors, which keeps chains of frames apart; else multiplied out.
   for (const auto& polynomial : {std::optional(Shallow(arena_, sum)), Expand(arena_, sum, kMostMonomials)}) {
     if (!polynomial) continue;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/stop.h"
 #include "solve/icp/prepare/polynomial.h"
 
 /// Coordinates in rotated frames, which robots' formulas are full of.
@@ -27,7 +28,8 @@ struct Lemma {
 /// one that enters the next, a link further.
 class Rotations {
  public:
-  explicit Rotations(expr::Arena& arena) : arena_(arena) {}
+  /// @param stop  leaves sums as they are once it asks for that.
+  explicit Rotations(expr::Arena& arena, base::StopToken stop = {}) : arena_(arena), stop_(std::move(stop)) {}
 
   /// Returns an equal formula, its sums rewritten.
   expr::TermId Rewrite(expr::TermId formula);
@@ -59,6 +61,7 @@ class Rotations {
     TermId a, b;  ///< the vector
     TermId p, q;  ///< its coordinates in the rotated frame
     bool both = false;
+    mutable std::optional<expr::Polynomial> length;  ///< once it was asked for; see LengthOf
   };
 
   /// Is the square of a vector: a sum of two squares of monic terms, with their factors.
@@ -79,19 +82,23 @@ class Rotations {
   // In rotation_links.cc.
   std::optional<expr::Polynomial> Over(TermId term);
   std::optional<expr::Polynomial> NewOver(TermId term);
+  std::optional<expr::Polynomial> Expanded(TermId term);
   std::optional<Split> Outermost(const expr::Polynomial& polynomial);
   std::optional<Split> SplitBy(const expr::Polynomial& polynomial, TermId angle);
   expr::Polynomial Turned(Split split);
   void Turn(expr::Polynomial& sum);
   bool TurnTwice(expr::Polynomial& sum);
   static std::pair<expr::Polynomial, expr::Polynomial> PartsOf(const Vector& vector);
+  static const expr::Polynomial& LengthOf(const Frame& frame);
+  static std::optional<Rational> TimesIn(const expr::Polynomial& polynomial, const expr::Polynomial& length);
   void Shorten(expr::Polynomial& polynomial);
   Lemma Link(TermId sum, const expr::Polynomial& polynomial);
 
   expr::Arena& arena_;
+  base::StopToken stop_;
   std::map<TermId, std::deque<Frame>> frames_;  // by angle
   std::vector<TermId> rewritten_;
-  std::map<TermId, std::optional<expr::Polynomial>> over_;
+  std::map<TermId, std::optional<expr::Polynomial>> over_, expanded_;
 };
 
 }  // namespace rondo::solve::icp

@@ -34,6 +34,16 @@ bool IsPlace(const expr::Arena& arena, const Monomial& m) {
   return std::ranges::any_of(m, [&](TermId t) { return !IsWave(arena, t); });
 }
 
+std::set<TermId> AnglesOf(const expr::Arena& arena, const Polynomial& polynomial) {
+  std::set<TermId> angles;
+  for (const auto& [m, c] : polynomial) {
+    for (const TermId t : m) {
+      if (IsWave(arena, t)) angles.insert(arena.arg(t, 0));
+    }
+  }
+  return angles;
+}
+
 size_t SumFactors(const expr::Arena& arena, TermId t) {
   if (arena.op(t) == Op::kMul) return SumFactors(arena, arena.arg(t, 0)) + SumFactors(arena, arena.arg(t, 1));
   return arena.op(t) == Op::kAdd ? 1 : 0;
@@ -43,6 +53,7 @@ size_t SumFactors(const expr::Arena& arena, TermId t) {
 
 // The term multiplied out, over coordinates as far as possible: these are atoms.
 std::optional<Polynomial> Rotations::Over(TermId term) {
+  if (stop_.StopRequested()) return std::nullopt;
   if (const auto known = over_.find(term); known != over_.end()) return known->second;
   auto polynomial = NewOver(term);
   return over_[term] = std::move(polynomial);
@@ -59,7 +70,7 @@ std::optional<Polynomial> Rotations::NewOver(TermId term) {
   const auto args = arena_.args(term);
   for (const TermId a : std::vector<TermId>(args.begin(), args.end())) {
     // Parts of one vector may be spread over the sum: what is turned in one factor alone would not meet the rest.
-    auto part = SumFactors(arena_, a) < 2 ? expr::Expand(arena_, a, kMostMonomials) : std::nullopt;
+    auto part = SumFactors(arena_, a) < 2 ? Expanded(a) : std::nullopt;
     if (!part) part = Over(a);
     if (!part) return std::nullopt;
     for (const auto& [m, c] : *part) AddTo(sum, m, c);
@@ -68,6 +79,12 @@ std::optional<Polynomial> Rotations::NewOver(TermId term) {
   Turn(sum);
   Shorten(sum);
   return sum;
+}
+
+std::optional<Polynomial> Rotations::Expanded(TermId term) {
+  const auto [it, fresh] = expanded_.try_emplace(term);
+  if (fresh) it->second = expr::Expand(arena_, term, kMostMonomials);
+  return it->second;
 }
 
 void Rotations::Turn(Polynomial& sum) {
@@ -89,13 +106,7 @@ void Rotations::Turn(Polynomial& sum) {
 // A (cos^2 u - sin^2 u) + 2 B sin u cos u + rest, a vector that is turned by u twice, becomes p cos u + q sin u + rest, with the
 // coordinates p and q that it has once it is turned. Returns false if there is none.
 bool Rotations::TurnTwice(Polynomial& sum) {
-  std::set<TermId> angles;
-  for (const auto& [m, c] : sum) {
-    for (const TermId t : m) {
-      if (IsWave(arena_, t)) angles.insert(arena_.arg(t, 0));
-    }
-  }
-  for (const TermId angle : angles) {
+  for (const TermId angle : AnglesOf(arena_, sum)) {
     const TermId cosine = arena_.Apply(Elementary::kCos, {angle});
     const TermId sine = arena_.Apply(Elementary::kSin, {angle});
     Split split;
@@ -145,14 +156,8 @@ std::pair<Polynomial, Polynomial> Rotations::PartsOf(const Vector& vector) {
 // Of the angles by which vectors are turned in the sum, the one that leaves the least apart: in a chain of
 // frames, the last one.
 std::optional<Rotations::Split> Rotations::Outermost(const Polynomial& polynomial) {
-  std::set<TermId> angles;
-  for (const auto& [m, c] : polynomial) {
-    for (const TermId t : m) {
-      if (IsWave(arena_, t)) angles.insert(arena_.arg(t, 0));
-    }
-  }
   std::optional<Split> best;
-  for (const TermId angle : angles) {
+  for (const TermId angle : AnglesOf(arena_, polynomial)) {
     auto split = SplitBy(polynomial, angle);
     if (split && (!best || split->rest.size() < best->rest.size())) best = std::move(split);
   }
@@ -212,6 +217,31 @@ Polynomial Rotations::Turned(Split split) {
   return result;
 }
 
+// The square of the length of its vector; nothing if that is too long to be of use.
+const Polynomial& Rotations::LengthOf(const Frame& frame) {
+  if (frame.length) return *frame.length;
+  frame.length.emplace();
+  const auto [a, b] = PartsOf(frame.vector);
+  const auto first = expr::Product(a, a, kMostMonomials);
+  const auto second = expr::Product(b, b, kMostMonomials);
+  if (!first || !second) return *frame.length;
+  frame.length = *first;
+  for (const auto& [m, c] : *second) AddTo(*frame.length, m, c);
+  return *frame.length;
+}
+
+// How often the squares of `length` occur in a polynomial, all of them equally often; nothing if they do not.
+std::optional<Rational> Rotations::TimesIn(const Polynomial& polynomial, const Polynomial& length) {
+  std::optional<Rational> times;
+  for (const auto& [m, c] : length) {
+    if (m.size() < 2 || m.front() != m.back()) continue;
+    const auto it = polynomial.find(m);
+    if (it == polynomial.end() || (times && it->second != *times * c)) return std::nullopt;
+    times = it->second / c;
+  }
+  return times;
+}
+
 // Lengths of vectors that are turned become lengths of what they are turned into, if that is shorter.
 void Rotations::Shorten(Polynomial& polynomial) {
   Polynomial longer = polynomial;
@@ -221,25 +251,12 @@ void Rotations::Shorten(Polynomial& polynomial) {
     for (const auto& [angle, frames] : frames_) {
       for (const Frame& f : frames) {
         if (used.contains(&f)) continue;
-        const auto [a, b] = PartsOf(f.vector);
-        auto length = expr::Product(a, a, kMostMonomials);
-        const auto other = expr::Product(b, b, kMostMonomials);
-        if (!length || !other) continue;
-        for (const auto& [m, c] : *other) AddTo(*length, m, c);
-        // As often as its squares occur.
-        std::optional<Rational> factor;
-        bool fits = true;
-        for (const auto& [m, c] : *length) {
-          if (m.size() < 2 || m.front() != m.back()) continue;
-          const auto it = longer.find(m);
-          fits = fits && it != longer.end() && (!factor || it->second == *factor * c);
-          if (fits) factor = it->second / c;
-        }
-        if (!fits || !factor) continue;
-        for (const auto& [m, c] : *length) AddTo(longer, m, Rational(0) - *factor * c);
+        const auto times = TimesIn(longer, LengthOf(f));
+        if (!times) continue;
+        for (const auto& [m, c] : LengthOf(f)) AddTo(longer, m, Rational(0) - *times * c);
         for (const TermId coordinate : {f.p, f.q}) {
           const auto [lead, monic] = Monic(arena_, coordinate);
-          AddTo(longer, {monic, monic}, *factor * lead * lead);
+          AddTo(longer, {monic, monic}, *times * lead * lead);
         }
         used.insert(&f);
         changed = true;
