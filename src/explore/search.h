@@ -106,8 +106,7 @@ class Searcher {
   enum class Cut : uint8_t { kNone, kBroken, kDead, kStopped, kMany };
   struct Listed {
     Cut cut = Cut::kNone;
-    size_t next = 0;  // kMany: the number of the state that is to be expanded next
-    uint32_t source = 0;
+    uint32_t source = 0;  // the number of the state in the batch at which the list ends
     Broken broken;
   };
 
@@ -128,7 +127,7 @@ class Searcher {
   void Level() {
     next_.Clear();
     for (at_ = 0; at_ < frontier_.size() && !done_;) {
-      // Does not depend on the number of threads, nor does anything else that decides what counts.
+      // So many that their successors fill the caches, and no more. Where batches end does not matter to what is found.
       const uint64_t listed = std::max<uint64_t>(1, result_.transitions);
       const auto size = std::clamp<uint64_t>(kBatchListed * (expanded_ + 1) / listed, 1, kBatch);
       Batch(std::min<size_t>(size, frontier_.size() - at_));
@@ -153,7 +152,7 @@ class Searcher {
     parents_.clear();
     for (size_t i = 0; i < size; ++i) parents_.push_back(frontier_.id(at_ + i));
     Settle(std::span(lists_).first(used + 1), last);
-    const size_t ended = last.cut == Cut::kMany ? last.next : size;
+    const size_t ended = last.cut == Cut::kMany ? last.source : size;
     at_ += ended;
     expanded_ += ended;
     if (last.cut != Cut::kMany || done_ || ended > 0) return;
@@ -171,10 +170,11 @@ class Searcher {
     bool stopped = false;
     for (size_t i = first; i < last; ++i) {
       const auto source = static_cast<uint32_t>(i);
-      if (list.count() >= kListed) return {Cut::kMany, i, source, {}};
-      if ((i - first) % kBetween == 0 && Poll(member)) return {Cut::kStopped, i, source, {}};
+      if (list.count() >= kListed) return {Cut::kMany, source, {}};
+      const bool polls = (i - first) % kBetween == 0;
+      if (options_.stop.cancelled() || (polls && Poll(member))) return {Cut::kStopped, source, {}};
       const State state = frontier_[at_ + i];
-      if (options_.deadlocks && system.Deadlocked(state)) return {Cut::kDead, i, source, {}};
+      if (options_.deadlocks && system.Deadlocked(state)) return {Cut::kDead, source, {}};
       const uint32_t before = list.count();
       const Broken broken = system.Successors(state, [&](State next) {
         list.Add(next, source);
@@ -182,13 +182,13 @@ class Searcher {
         if (count % kPolled == 0) stopped = stopped || Poll(member);
         return !stopped && count <= kListed;
       });
-      if (stopped) return {Cut::kStopped, i, source, {}};
+      if (stopped) return {Cut::kStopped, source, {}};
       if (list.count() - before > kListed) {
         list.KeepFirst(before);
-        return {Cut::kMany, i, source, {}};
+        return {Cut::kMany, source, {}};
       }
       std::ranges::copy(system.Marks(), marks_.begin() + static_cast<std::ptrdiff_t>(i * width_));
-      if (broken.property >= 0) return {Cut::kBroken, i, source, broken};
+      if (broken.property >= 0) return {Cut::kBroken, source, broken};
     }
     return {};
   }
@@ -213,7 +213,7 @@ class Searcher {
     if (from != kNoState && !stopped) Count(systems_[0]->Marks());
     if (done_) return;
     if (stopped) return End(Ending::kStopped);
-    Settle({&piece, 1}, broken.property >= 0 ? Listed{Cut::kBroken, 0, 0, broken} : Listed{});
+    Settle({&piece, 1}, broken.property >= 0 ? Listed{Cut::kBroken, 0, broken} : Listed{});
   }
 
   // Visits what was listed up to a cut. What was found first counts, and nothing behind it.
@@ -338,8 +338,8 @@ class Searcher {
 };
 
 /// Searches breadth first from all initial states, with a thread for each of the systems, which are all the
-/// same. The result does not depend on how many there are, but for seconds and bytes, and neither does the
-/// path; what is told of a broken property, the first system knows.
+/// same. The result does not depend on how many there are, but for seconds, bytes, and where memory ends it; neither
+/// does the path; what is told of a broken property, the first system knows.
 ///
 /// Exact unless `options.compact`: then a state whose hash was seen before is taken for visited. Memory is
 /// O(states): the bytes of each state (or its hash) and 13 to 20 more.
