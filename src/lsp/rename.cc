@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
 
 #include "lsp/names.h"
@@ -14,7 +13,6 @@
 
 namespace rondo::lsp {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
 
 std::string Server::WordAt(const Document& document, const json& parameters) const {
@@ -23,29 +21,25 @@ std::string Server::WordAt(const Document& document, const json& parameters) con
   return document.text.substr(begin, end - begin);
 }
 
-std::set<std::string> Server::FilesOf(const std::string& root) const {
-  workspace::Session session;
-  Prepare(session);
-  workspace::CheckFile(root, session);
-  std::set<std::string> files;
-  for (size_t f = 0; f < session.sources.size(); ++f)
-    files.insert(Plain(std::string(session.sources.path(diag::FileId(f)))));
-  return files;
+const std::set<std::string>& Server::FilesOf(const std::string& root) {
+  // Of a specification that is open, the program may have been closed, or written, since.
+  if (!checked_.contains(root)) Check(root);
+  return checked_.at(root).files;
 }
 
 std::set<std::string> Server::RootsWith(const std::string& path) const {
   std::set<std::string> roots{RootOf(path)};
   for (const auto& [root, checked] : checked_) {
-    if (std::ranges::find(checked.files, path) != checked.files.end()) roots.insert(root);
+    if (checked.files.contains(path)) roots.insert(root);
   }
   return roots;
 }
 
-std::map<std::string, std::vector<std::pair<size_t, size_t>>> Server::PlacesOf(
-    const std::string& of, const std::string& word) const {
+std::map<std::string, std::vector<std::pair<size_t, size_t>>> Server::PlacesOf(const std::string& of,
+                                                                               const std::string& word) {
   std::map<std::string, std::vector<std::pair<size_t, size_t>>> places;
   std::set<std::string> files;
-  for (const std::string& root : RootsWith(of)) files.merge(FilesOf(root));
+  for (const std::string& root : RootsWith(of)) files.insert(FilesOf(root).begin(), FilesOf(root).end());
   for (const std::string& path : files) {
     diag::SourceSet sources;
     const diag::FileId file = sources.Add(path, TextOf(path));

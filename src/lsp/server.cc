@@ -188,7 +188,7 @@ void Server::Change(const json& parameters) {
 void Server::Touch(const std::string& path) {
   Forget(RootOf(path));
   for (const auto& [root, checked] : checked_) {
-    if (root != RootOf(path) && std::ranges::find(checked.files, path) != checked.files.end()) Forget(root);
+    if (root != RootOf(path) && checked.files.contains(path)) Forget(root);
   }
 }
 
@@ -274,7 +274,7 @@ void Server::Check(const std::string& root) {
   workspace::CheckFile(root, session);
   checked.files.clear();
   for (size_t f = 0; f < session.sources.size(); ++f)
-    checked.files.push_back(Plain(std::string(session.sources.path(diag::FileId(f)))));
+    checked.files.insert(Plain(std::string(session.sources.path(diag::FileId(f)))));
   for (const diag::Diagnostic& d : session.diagnostics.Sorted()) {
     const std::string uri =
         d.span.file.valid() ? UriOf(Plain(std::string(session.sources.path(d.span.file)))) : UriOf(root);

@@ -46,7 +46,7 @@ class Server {
   };
   /// Is what is known of a file that is checked as a whole, with what belongs to it.
   struct Checked {
-    std::vector<std::string> files;                        // that a check read: paths
+    std::set<std::string> files;                           // that a check read: paths
     std::map<std::string, std::vector<Json>> diagnostics;  // by address: as they are published
     std::map<std::string, std::vector<Json>> fixes;        // by address: code actions with their ranges
     std::map<std::string, std::vector<Json>> proofs;       // by address: diagnostics of proofs
@@ -76,13 +76,13 @@ class Server {
   base::Result<Json> Rename(const Json& parameters);
 
   std::string WordAt(const Document& document, const Json& parameters) const;
-  /// Returns the paths of everything that a check of a root reads.
-  std::set<std::string> FilesOf(const std::string& root) const;
+  /// Returns the paths of everything that the last check of a root read, which is made if there was none.
+  const std::set<std::string>& FilesOf(const std::string& root);
   /// Returns the roots that are known to read a file, and its own.
   std::set<std::string> RootsWith(const std::string& path) const;
   /// Returns where a word stands in everything that is read with a file, by path: bytes.
   std::map<std::string, std::vector<std::pair<size_t, size_t>>> PlacesOf(const std::string& of,
-                                                                         const std::string& word) const;
+                                                                         const std::string& word);
   Json RangeOf(const std::string& text, std::pair<size_t, size_t> bytes) const;
 
   /// Returns which file is checked when this one changes: the program of a specification.

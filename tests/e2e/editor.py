@@ -243,6 +243,9 @@ def files(folder):
     editor.change(program, 2, {"text": text + "\n# not saved\n"})
     editor.save(spec)
     check("nothing is proved of another text", editor.wait(lambda: any(m["method"] == "rondo/verification" and m["params"]["items"] for m in editor.heard[count:]), 3) is not True)
+    editor.tell("textDocument/didClose", {"textDocument": {"uri": program.as_uri()}})
+    found = editor.ask("textDocument/definition", {"textDocument": {"uri": spec.as_uri()}, "position": place(promise, "shared_paths")["start"]})
+    check("defined in a program that was closed", [d["uri"] for d in found] == [program.as_uri()], found)
     check("goodbye again", editor.close() == 0)
 
 
