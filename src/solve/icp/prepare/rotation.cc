@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "expr/substitute.h"
@@ -15,8 +14,6 @@ using expr::Op;
 using expr::Polynomial;
 
 namespace {
-
-constexpr size_t kMostMonomials = 64;
 
 using Rational = expr::Rational;
 using Complex = std::pair<Rational, Rational>;
@@ -85,19 +82,26 @@ bool Rotations::IsTotal(TermId term) const {
   return total;
 }
 
+bool Rotations::IsWave(TermId t) const {
+  return IsCall(arena_, t, Elementary::kSin) || IsCall(arena_, t, Elementary::kCos);
+}
+
+std::set<expr::TermId> Rotations::AnglesOf(const Polynomial& polynomial) const {
+  std::set<TermId> angles;
+  for (const auto& [m, c] : polynomial) {
+    for (const TermId t : m) {
+      if (IsWave(t)) angles.insert(arena_.arg(t, 0));
+    }
+  }
+  return angles;
+}
+
 expr::TermId Rotations::RewriteSum(TermId sum) {
   if (stop_.StopRequested() || !IsTotal(sum)) return sum;
   // As it is written, with sums as factors, which keeps chains of frames apart; else multiplied out.
   for (const auto& polynomial : {std::optional(Shallow(arena_, sum)), Expand(arena_, sum, kMostMonomials)}) {
     if (!polynomial) continue;
-    std::set<TermId> angles;
-    for (const auto& [m, c] : *polynomial) {
-      for (const TermId t : m) {
-        if (IsCall(arena_, t, Elementary::kSin) || IsCall(arena_, t, Elementary::kCos))
-          angles.insert(arena_.arg(t, 0));
-      }
-    }
-    for (const TermId angle : angles) {
+    for (const TermId angle : AnglesOf(*polynomial)) {
       const TermId result = RewriteAngle(*polynomial, angle);
       if (result.valid()) return result;
     }

@@ -4,6 +4,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -70,7 +71,11 @@ class Rotations {
     TermId sum;
   };
 
+  static constexpr size_t kMostMonomials = 64;
+
   bool IsTotal(TermId term) const;
+  bool IsWave(TermId t) const;  // a sine or cosine
+  std::set<TermId> AnglesOf(const expr::Polynomial& polynomial) const;
   TermId RewriteSum(TermId sum);
   TermId RewriteAngle(const expr::Polynomial& polynomial, TermId angle);
   Frame& FrameOf(TermId angle, const Vector& vector, Complex& ratio);
@@ -80,6 +85,7 @@ class Rotations {
   TermId Part(const Vector& vector, bool imaginary);
 
   // In rotation_links.cc.
+  bool IsPlace(const expr::Monomial& m) const;
   std::optional<expr::Polynomial> Over(TermId term);
   std::optional<expr::Polynomial> NewOver(TermId term);
   std::optional<expr::Polynomial> Expanded(TermId term);

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
-#include <set>
 #include <unordered_set>
 #include <utility>
 
@@ -21,28 +20,7 @@ using expr::TermId;
 
 namespace {
 
-constexpr size_t kMostMonomials = 64;
 constexpr size_t kMostTurns = 8;  // of one sum
-
-bool IsWave(const expr::Arena& arena, TermId t) {
-  return arena.op(t) == Op::kElementary &&
-         (arena.elementary_of(t) == Elementary::kSin || arena.elementary_of(t) == Elementary::kCos);
-}
-
-// What only waves make up is an angle that is a sum: nothing that frames would turn.
-bool IsPlace(const expr::Arena& arena, const Monomial& m) {
-  return std::ranges::any_of(m, [&](TermId t) { return !IsWave(arena, t); });
-}
-
-std::set<TermId> AnglesOf(const expr::Arena& arena, const Polynomial& polynomial) {
-  std::set<TermId> angles;
-  for (const auto& [m, c] : polynomial) {
-    for (const TermId t : m) {
-      if (IsWave(arena, t)) angles.insert(arena.arg(t, 0));
-    }
-  }
-  return angles;
-}
 
 size_t SumFactors(const expr::Arena& arena, TermId t) {
   if (arena.op(t) == Op::kMul) return SumFactors(arena, arena.arg(t, 0)) + SumFactors(arena, arena.arg(t, 1));
@@ -50,6 +28,11 @@ size_t SumFactors(const expr::Arena& arena, TermId t) {
 }
 
 }  // namespace
+
+// What only waves make up is an angle that is a sum: nothing that frames would turn.
+bool Rotations::IsPlace(const Monomial& m) const {
+  return std::ranges::any_of(m, [this](TermId t) { return !IsWave(t); });
+}
 
 // The term multiplied out, over coordinates as far as possible: these are atoms.
 std::optional<Polynomial> Rotations::Over(TermId term) {
@@ -106,7 +89,7 @@ void Rotations::Turn(Polynomial& sum) {
 // A (cos^2 u - sin^2 u) + 2 B sin u cos u + rest, a vector that is turned by u twice, becomes p cos u + q sin u + rest, with the
 // coordinates p and q that it has once it is turned. Returns false if there is none.
 bool Rotations::TurnTwice(Polynomial& sum) {
-  for (const TermId angle : AnglesOf(arena_, sum)) {
+  for (const TermId angle : AnglesOf(sum)) {
     const TermId cosine = arena_.Apply(Elementary::kCos, {angle});
     const TermId sine = arena_.Apply(Elementary::kSin, {angle});
     Split split;
@@ -122,7 +105,7 @@ bool Rotations::TurnTwice(Polynomial& sum) {
       }
       Monomial other;
       std::ranges::copy_if(m, std::back_inserter(other), [&](TermId t) { return t != cosine && t != sine; });
-      place = place || IsPlace(arena_, other);
+      place = place || IsPlace(other);
       if (cos == 1) split.vector[other].second = c / Rational(2);
       if (cos == 2) split.vector[other].first = c;
       if (cos == 2) cosines.emplace(other, c);
@@ -157,7 +140,7 @@ std::pair<Polynomial, Polynomial> Rotations::PartsOf(const Vector& vector) {
 // frames, the last one.
 std::optional<Rotations::Split> Rotations::Outermost(const Polynomial& polynomial) {
   std::optional<Split> best;
-  for (const TermId angle : AnglesOf(arena_, polynomial)) {
+  for (const TermId angle : AnglesOf(polynomial)) {
     auto split = SplitBy(polynomial, angle);
     if (split && (!best || split->rest.size() < best->rest.size())) best = std::move(split);
   }
@@ -197,7 +180,7 @@ std::optional<Rotations::Split> Rotations::SplitBy(const Polynomial& polynomial,
   for (const auto& [m, z] : scaled) {
     Monomial other;
     std::ranges::set_difference(m, split.common, std::back_inserter(other));
-    place = place || IsPlace(arena_, other);
+    place = place || IsPlace(other);
     split.vector.emplace(std::move(other), z);
   }
   if (!place) return std::nullopt;
