@@ -58,6 +58,29 @@ nlohmann::json ToJson(const PartRecord::Step& step) {
   return json;
 }
 
+constexpr std::pair<const char*, reach::Conjunct::Source> kSources[] = {
+    {"state", reach::Conjunct::Source::kState},
+    {"claim", reach::Conjunct::Source::kClaim},
+    {"event", reach::Conjunct::Source::kEvent}};
+
+nlohmann::json ToJson(const reach::Invariant& invariant) {
+  nlohmann::json modes = nlohmann::json::array();
+  for (const reach::ModeInvariant& one : invariant) {
+    nlohmann::json values = nlohmann::json::array();
+    for (const auto& value : one.mode) values.push_back(value.ToString());
+    nlohmann::json conjuncts = nlohmann::json::array();
+    for (const reach::Conjunct& c : one.conjuncts) {
+      nlohmann::json json{{"index", c.index}, {"comparison", c.comparison}, {"negated", c.negated}, {"bound", c.bound}};
+      for (const auto& [name, source] : kSources) {
+        if (source == c.source) json["of"] = name;
+      }
+      conjuncts.push_back(std::move(json));
+    }
+    modes.push_back({{"mode", values}, {"at_most_zero", conjuncts}});
+  }
+  return modes;
+}
+
 // Reads what SaveTube writes. Throws nlohmann's exceptions, or clears `good`.
 struct Reader {
   bool good = true;
@@ -93,6 +116,27 @@ struct Reader {
     return step;
   }
 
+  reach::ModeInvariant Mode(const nlohmann::json& json) {
+    reach::ModeInvariant one;
+    for (const auto& text : json.at("mode")) {
+      const auto value = expr::Rational::Parse(text.get<std::string>());
+      good = good && value.has_value();
+      one.mode.push_back(value.value_or(expr::Rational(0)));
+    }
+    for (const auto& c : json.at("at_most_zero")) {
+      reach::Conjunct& conjunct = one.conjuncts.emplace_back();
+      const auto* const source = std::ranges::find(kSources, c.at("of").get<std::string>(),
+                                                   &std::pair<const char*, reach::Conjunct::Source>::first);
+      good = good && source != std::end(kSources);
+      if (good) conjunct.source = source->second;
+      conjunct.index = Whole(c.at("index"));
+      conjunct.comparison = Whole(c.at("comparison"));
+      conjunct.negated = c.at("negated").get<bool>();
+      conjunct.bound = c.at("bound").get<double>();
+    }
+    return one;
+  }
+
   PartRecord Part(const nlohmann::json& json) {
     PartRecord part;
     for (const auto& cut : json.at("path")) part.path.push_back({Whole(cut.at(0)), cut.at(1).get<bool>()});
@@ -105,6 +149,8 @@ struct Reader {
 
 Certificate CertificateOf(const reach::Proved& proved) {
   Certificate certificate;
+  certificate.invariant = proved.invariant;
+  if (proved.IsByInvariant()) return certificate;
   const auto add = [&](const std::vector<reach::Cut>& path) -> PartRecord& {
     PartRecord& part = certificate.parts.emplace_back();
     for (const reach::Cut& cut : path) part.path.push_back({cut.side, cut.upper});
@@ -136,6 +182,7 @@ base::Result<bool> SaveTube(const std::string& path, const TubeFile& file) {
   }
   nlohmann::json json = ContractToJson(kFormat, {file.files, file.spec, file.contract});
   json["parts"] = parts;
+  if (file.certificate.invariant) json["invariant"] = ToJson(*file.certificate.invariant);
   return base::WriteFileAtomically(
       path, json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
@@ -154,6 +201,10 @@ base::Result<TubeFile> ReadTube(std::string_view text) {
   Reader reader;
   try {
     for (const auto& part : json.at("parts")) file.certificate.parts.push_back(reader.Part(part));
+    if (json.contains("invariant")) {
+      auto& invariant = file.certificate.invariant.emplace();
+      for (const auto& mode : json.at("invariant")) invariant.push_back(reader.Mode(mode));
+    }
   } catch (const nlohmann::json::exception&) {
     reader.good = false;
   }

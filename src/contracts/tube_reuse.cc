@@ -61,7 +61,8 @@ TubeReuse::Cover TubeReuse::Covers(const ContractResult& contract) const {
 void TubeReuse::Remember(const ContractResult& contract, reach::certify::Certificate certificate) {
   if (!contract.outcome) return;
   const auto* proved = std::get_if<reach::Proved>(&*contract.outcome);
-  if (proved == nullptr) return;
+  // An invariant is about the coordinates that it was found in.
+  if (proved == nullptr || proved->invariant) return;
   const reach::CentredProblem centred = reach::Centred(contract.made.problem);
   Tube tube{contract.made.problem.name, proved->leaves, std::move(certificate), {}};
   const auto move = [&](interval::Box& box) {

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "reach/certify/follower.h"
+#include "reach/certify/invariance.h"
 
 namespace rondo::reach::certify {
 
@@ -82,23 +83,21 @@ std::string CheckPart(System& system, Bases& bases, const Part& part, size_t dep
   return "";
 }
 
-}  // namespace
-
-Acceptance Check(const Problem& problem, const Certificate& certificate, unsigned jobs,
-                 const base::StopToken& stop) {
-  Acceptance verdict;
+// What no invariant shows, by following every part of the initial set.
+void CheckParts(const Problem& problem, const std::vector<PartRecord>& recorded, unsigned jobs,
+                const base::StopToken& stop, Acceptance& verdict) {
   auto made = System::Of(problem);
   if (!made.ok()) {
     verdict.reason = made.error().message;
-    return verdict;
+    return;
   }
   System& system = *made.value();
   std::vector<const PartRecord*> records;
-  for (const PartRecord& r : certificate.parts) records.push_back(&r);
+  for (const PartRecord& r : recorded) records.push_back(&r);
   std::vector<Part> parts;
   if (!Divide(system, problem.initial, records, 0, parts)) {
     verdict.reason = "its parts are not the whole initial set";
-    return verdict;
+    return;
   }
   Bases bases;
   std::vector<std::string> reasons(parts.size());
@@ -110,6 +109,28 @@ Acceptance Check(const Problem& problem, const Certificate& certificate, unsigne
     if (!reasons[i].empty() && verdict.reason.empty()) verdict.reason = reasons[i];
   }
   verdict.accepted = verdict.reason.empty();
+}
+
+}  // namespace
+
+Acceptance Check(const Problem& problem, const Certificate& certificate, unsigned jobs,
+                 const base::StopToken& stop) {
+  Acceptance verdict;
+  Problem rest = problem;
+  if (certificate.invariant) {
+    auto shown = CheckInvariant(problem, *certificate.invariant, stop);
+    if (!shown.ok()) {
+      verdict.reason = shown.error().message;
+      return verdict;
+    }
+    verdict.boxes = shown.value().boxes;
+    const std::vector<size_t>& claims = shown.value().claims;
+    for (size_t i = claims.size(); i-- > 0;)
+      rest.claims.erase(rest.claims.begin() + static_cast<ptrdiff_t>(claims[i]));
+    verdict.accepted = rest.claims.empty();
+    if (verdict.accepted) return verdict;
+  }
+  CheckParts(rest, certificate.parts, jobs, stop, verdict);
   return verdict;
 }
 

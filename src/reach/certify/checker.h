@@ -1,10 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/stop.h"
-#include "reach/problem/problem.h"
+#include "reach/problem/invariant.h"
 
 /// The independent checker of reachability proofs. It shares with the engine that finds them what a problem
 /// is and means (`reach/problem`) and interval arithmetic (`interval`), nothing else.
@@ -44,7 +45,9 @@ struct PartRecord {
 /// Is what a proof of a problem leaves behind. Nothing in it is believed: its parts must be all of the
 /// initial set (the leaves of one binary tree of cuts), and its steps are what is tried first.
 struct Certificate {
-  std::vector<PartRecord> parts;
+  /// Holds at all times; the claims that follow from it are shown by it, the others by the parts.
+  std::optional<Invariant> invariant;
+  std::vector<PartRecord> parts;  ///< none if every claim follows from the invariant
 };
 
 /// Is the answer of the checker.
@@ -52,6 +55,7 @@ struct Acceptance {
   bool accepted = false;
   std::string reason;  ///< why the certificate is not accepted; empty if it is
   size_t steps = 0;    ///< steps of the flow that were shown, over all parts
+  size_t boxes = 0;    ///< on which an invariant was shown
 };
 
 /// Shows again that every claim of the problem holds on every trajectory that begins in the initial set.

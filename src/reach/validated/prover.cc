@@ -5,10 +5,34 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "reach/invariants/find.h"
+#include "reach/problem/bounds.h"
 #include "reach/validated/runner.h"
 #include "reach/validated/search.h"
 
 namespace rondo::reach {
+
+namespace {
+
+// What terms can be on a box, whatever else is known of the states.
+base::Result<std::vector<Interval>> RangesOnBox(const Problem& problem, interval::Box box,
+                                                const std::vector<Query>& queries) {
+  std::vector<TermId> terms;
+  for (const Query& q : queries) terms.push_back(q.term);
+  std::vector<TermId> variables = problem.states;
+  for (const Input& input : problem.inputs) {
+    variables.push_back(input.term);
+    box.push_back(input.bounds);
+  }
+  const auto program = Compile(*problem.arena, std::move(variables), terms);
+  if (!program.ok()) return program.error();
+  const std::vector<Interval> values = ValuesOn(program.value(), box);
+  std::vector<Interval> ranges;
+  for (const uint32_t output : program.value().outputs) ranges.push_back(values[output]);
+  return ranges;
+}
+
+}  // namespace
 
 base::Result<std::vector<Interval>> RangesOn(const Problem& problem, const Proved& proved,
                                              const std::vector<Query>& queries, const ProverOptions& options,
@@ -18,6 +42,7 @@ base::Result<std::vector<Interval>> RangesOn(const Problem& problem, const Prove
   auto made = Stages::Of(problem, std::move(terms));
   if (!made.ok()) return made.error();
   std::vector<std::optional<std::vector<Interval>>> answers(proved.leaves.size());
+  if (proved.IsByInvariant()) return RangesOnBox(problem, proved.leaves[0].final, queries);
   base::ParallelFor(proved.leaves.size(), options.jobs, [&](size_t i) {
     answers[i] = Runner(*made.value(), options, options.flow, proved.leaves[i].initial, problem.initial, stop)
                      .Ask(queries);
@@ -59,8 +84,11 @@ verdict::Verdict VerdictOf(const Outcome& outcome) {
   return std::holds_alternative<Refuted>(outcome) ? verdict::Verdict::kRefuted : verdict::Verdict::kUnknown;
 }
 
-base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& options,
-                             const base::StopToken& stop) {
+namespace {
+
+// By following every part of the initial set.
+base::Result<Outcome> DecideByTubes(const Problem& problem, const ProverOptions& options,
+                                    const base::StopToken& stop) {
   auto made = Stages::Of(problem);
   if (!made.ok()) return made.error();
   Stages& stages = *made.value();
@@ -73,10 +101,6 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
   Proved proved;
   std::string reason;
   bool searched = false;
-  // Where events are only possible, tubes are slow: what is plainly false need not wait for them.
-  if (!problem.events.empty()) {
-    if (auto refuted = search.Run(std::min<size_t>(options.samples, 32))) return Outcome{std::move(*refuted)};
-  }
   FlowOptions flow = options.flow;
   size_t done = 0;
   while (!open.empty()) {
@@ -130,6 +154,56 @@ base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& option
     if (options.progress) options.progress(done, open.size());
   }
   return Outcome{std::move(proved)};
+}
+
+// With an invariant that implies all claims there is no tube: one part, with a box around the invariant.
+Outcome ByInvariant(const Problem& problem, invariants::Found found) {
+  Leaf leaf{.initial = problem.initial, .path = {}, .tube = {}, .final = found.states, .steps = {}};
+  leaf.tube.push_back({0, Enclose(problem.horizon).hi, std::move(found.states)});
+  Proved proved;
+  proved.invariant = std::move(found.invariant);
+  proved.leaves.push_back(std::move(leaf));
+  return proved;
+}
+
+// Events make tubes slow: what is plainly false, and what always holds, need not wait for them.
+base::Result<Outcome> DecideWithEvents(const Problem& problem, const ProverOptions& options,
+                                       const base::StopToken& stop) {
+  auto made = Stages::Of(problem);
+  if (!made.ok()) return made.error();
+  auto compiled = Trajectories::Of(problem);
+  if (!compiled.ok()) return compiled.error();
+  Trajectories trajectories = std::move(compiled).value();
+  Search search(*made.value(), options, trajectories, stop);
+  if (auto refuted = search.Run(std::min<size_t>(options.samples, 32))) return Outcome{std::move(*refuted)};
+  auto found = invariants::Find(problem, trajectories, options.seed, stop);
+  if (!found) return DecideByTubes(problem, options, stop);
+  if (found->claims.size() == problem.claims.size()) return ByInvariant(problem, std::move(*found));
+  Problem rest = problem;
+  std::vector<size_t> left;  // of the claims, by their index in `rest`
+  rest.claims.clear();
+  for (size_t c = 0; c < problem.claims.size(); ++c) {
+    if (std::ranges::find(found->claims, c) != found->claims.end()) continue;
+    rest.claims.push_back(problem.claims[c]);
+    left.push_back(c);
+  }
+  auto decided = DecideByTubes(rest, options, stop);
+  if (!decided.ok()) return decided.error();
+  Outcome outcome = std::move(decided).value();
+  if (auto* proved = std::get_if<Proved>(&outcome)) proved->invariant = std::move(found->invariant);
+  if (auto* refuted = std::get_if<Refuted>(&outcome))
+    refuted->violation.claim = left[refuted->violation.claim];
+  auto* open = std::get_if<Undecided>(&outcome);
+  if (open != nullptr && open->closest) open->closest->claim = left[open->closest->claim];
+  return outcome;
+}
+
+}  // namespace
+
+base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& options,
+                             const base::StopToken& stop) {
+  return problem.events.empty() ? DecideByTubes(problem, options, stop)
+                                : DecideWithEvents(problem, options, stop);
 }
 
 }  // namespace rondo::reach

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "base/stop.h"
+#include "reach/problem/invariant.h"
 #include "reach/problem/numeric.h"
 #include "reach/validated/flow/flow.h"
 #include "verdict/verdict.h"
@@ -53,11 +54,17 @@ struct Leaf {
   std::vector<StepRecord> steps;
 };
 
-/// Says that every claim holds, part by part: leaves and empty parts together are all of the initial set.
+/// Says that every claim holds: those that the invariant implies by it, the others part by part (leaves and
+/// empty parts together are all of the initial set).
 struct Proved {
+  std::optional<Invariant> invariant;  ///< kept at all times
+  /// If every claim follows from the invariant: one, without steps, with a box around it.
   std::vector<Leaf> leaves;
   std::vector<std::vector<Cut>> empty;  ///< parts in which nothing satisfies what is assumed
   size_t steps = 0;                     ///< of the flow, over all leaves
+
+  /// Reports whether every claim follows from the invariant.
+  bool IsByInvariant() const { return invariant && leaves.size() == 1 && leaves[0].steps.empty(); }
 };
 
 /// Is a trajectory on which a claim fails; enclosed rigorously at that time if `certain`.
