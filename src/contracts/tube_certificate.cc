@@ -116,6 +116,21 @@ struct Reader {
     return step;
   }
 
+  reach::Paving Paving(const nlohmann::json& json) {
+    reach::Paving paving;
+    for (const auto& state : json.at("states")) paving.states.push_back(Whole(state));
+    paving.edges = json.at("edges").get<std::vector<std::vector<double>>>();
+    for (const auto& cell : json.at("cells")) {
+      auto& one = paving.cells.emplace_back();
+      for (const auto& edge : cell) {
+        const size_t number = Whole(edge);
+        good = good && number < UINT32_MAX;
+        one.push_back(static_cast<uint32_t>(number));
+      }
+    }
+    return paving;
+  }
+
   reach::ModeInvariant Mode(const nlohmann::json& json) {
     reach::ModeInvariant one;
     for (const auto& text : json.at("mode")) {
@@ -150,7 +165,8 @@ struct Reader {
 Certificate CertificateOf(const reach::Proved& proved) {
   Certificate certificate;
   certificate.invariant = proved.invariant;
-  if (proved.IsByInvariant()) return certificate;
+  certificate.paving = proved.paving;
+  if (proved.IsWithoutTube()) return certificate;
   const auto add = [&](const std::vector<reach::Cut>& path) -> PartRecord& {
     PartRecord& part = certificate.parts.emplace_back();
     for (const reach::Cut& cut : path) part.path.push_back({cut.side, cut.upper});
@@ -182,6 +198,8 @@ base::Result<bool> SaveTube(const std::string& path, const TubeFile& file) {
   }
   nlohmann::json json = ContractToJson(kFormat, {file.files, file.spec, file.contract});
   json["parts"] = parts;
+  if (const auto& paving = file.certificate.paving)
+    json["paving"] = {{"states", paving->states}, {"edges", paving->edges}, {"cells", paving->cells}};
   if (file.certificate.invariant) json["invariant"] = ToJson(*file.certificate.invariant);
   return base::WriteFileAtomically(
       path, json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
@@ -201,6 +219,7 @@ base::Result<TubeFile> ReadTube(std::string_view text) {
   Reader reader;
   try {
     for (const auto& part : json.at("parts")) file.certificate.parts.push_back(reader.Part(part));
+    if (json.contains("paving")) file.certificate.paving = reader.Paving(json.at("paving"));
     if (json.contains("invariant")) {
       auto& invariant = file.certificate.invariant.emplace();
       for (const auto& mode : json.at("invariant")) invariant.push_back(reader.Mode(mode));

@@ -61,8 +61,8 @@ TubeReuse::Cover TubeReuse::Covers(const ContractResult& contract) const {
 void TubeReuse::Remember(const ContractResult& contract, reach::certify::Certificate certificate) {
   if (!contract.outcome) return;
   const auto* proved = std::get_if<reach::Proved>(&*contract.outcome);
-  // An invariant is about the coordinates that it was found in.
-  if (proved == nullptr || proved->invariant) return;
+  // An invariant and a paving are about the coordinates that they were found in.
+  if (proved == nullptr || proved->invariant || proved->paving) return;
   const reach::CentredProblem centred = reach::Centred(contract.made.problem);
   Tube tube{contract.made.problem.name, proved->leaves, std::move(certificate), {}};
   const auto move = [&](interval::Box& box) {

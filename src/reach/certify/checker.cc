@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "reach/certify/cells.h"
 #include "reach/certify/follower.h"
 #include "reach/certify/invariance.h"
 
@@ -116,6 +117,13 @@ void CheckParts(const Problem& problem, const std::vector<PartRecord>& recorded,
 Acceptance Check(const Problem& problem, const Certificate& certificate, unsigned jobs,
                  const base::StopToken& stop) {
   Acceptance verdict;
+  if (certificate.paving) {
+    const auto shown = CheckPaving(problem, *certificate.paving, jobs, stop);
+    verdict.accepted = shown.ok();
+    if (shown.ok()) verdict.steps = shown.value();
+    if (!shown.ok()) verdict.reason = shown.error().message;
+    return verdict;
+  }
   Problem rest = problem;
   if (certificate.invariant) {
     auto shown = CheckInvariant(problem, *certificate.invariant, stop);

@@ -6,6 +6,7 @@
 
 #include "base/stop.h"
 #include "reach/problem/invariant.h"
+#include "reach/problem/paving.h"
 
 /// The independent checker of reachability proofs. It shares with the engine that finds them what a problem
 /// is and means (`reach/problem`) and interval arithmetic (`interval`), nothing else.
@@ -47,6 +48,7 @@ struct PartRecord {
 struct Certificate {
   /// Holds at all times; the claims that follow from it are shown by it, the others by the parts.
   std::optional<Invariant> invariant;
+  std::optional<Paving> paving;   ///< shows all claims; then there is nothing else
   std::vector<PartRecord> parts;  ///< none if every claim follows from the invariant
 };
 

@@ -108,7 +108,12 @@ bool Follower::Follow(Place place) {
   const std::vector<Rational>& instants = system_.instants();
   while (true) {
     if (place.met) {
-      if (place.instant + 1 == instants.size()) return true;
+      if (place.instant + 1 == instants.size()) {
+        const interval::Box here = place.set.Box();
+        if (end_.empty()) end_ = here;
+        for (size_t i = 0; i < here.size(); ++i) end_[i] = interval::Hull(end_[i], here[i]);
+        return true;
+      }
       if (!Meet(place)) break;
     }
     if (stop_.StopRequested()) {

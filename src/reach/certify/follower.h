@@ -28,6 +28,9 @@ class Follower {
   /// @param recorded  the part that the steps were recorded for: this one, or a larger one.
   std::string Run(const interval::Box& part, const interval::Box& recorded,
                   const std::vector<PartRecord::Step>& steps);
+  /// Encloses, after a success, the states at the horizon. Empty if nothing in the part satisfies what is
+  /// assumed.
+  const interval::Box& End() const { return end_; }
   /// Returns how many steps of the flow were shown.
   size_t steps() const { return steps_; }
   /// Returns, after a failure, the side of the part whose halves should be looked at, each on its own, if
@@ -114,6 +117,7 @@ class Follower {
   size_t symbols_ = 0;
   size_t order_ = 0;
   ReachSet last_;    ///< where it stopped, for WorstSide
+  interval::Box end_;
   double time_ = 0;  ///< how far it is, in seconds: roughly, for messages
   size_t steps_ = 0;
   size_t splits_ = 0;

@@ -62,7 +62,7 @@ void Runner::Keep(const Stage& stage, double from, double to, const interval::Bo
 // Are the errors out of proportion? Then what follows is not worth its time: smaller parts will be. What
 // inputs do is the same in smaller parts: beside it, errors are compared with all of the initial set.
 bool Runner::TooWide(const Flow& flow, double share) const {
-  if (monomials_->symbols() == 0) return false;
+  if (options_.wide || monomials_->symbols() == 0) return false;
   const bool driven = !stages_.problem().inputs.empty();
   constexpr double kDriven = 10;
   double worst = 0;

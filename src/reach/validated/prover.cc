@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "reach/invariants/find.h"
 #include "reach/problem/bounds.h"
+#include "reach/validated/cells.h"
 #include "reach/validated/runner.h"
 #include "reach/validated/search.h"
 
@@ -42,7 +43,7 @@ base::Result<std::vector<Interval>> RangesOn(const Problem& problem, const Prove
   auto made = Stages::Of(problem, std::move(terms));
   if (!made.ok()) return made.error();
   std::vector<std::optional<std::vector<Interval>>> answers(proved.leaves.size());
-  if (proved.IsByInvariant()) return RangesOnBox(problem, proved.leaves[0].final, queries);
+  if (proved.IsWithoutTube()) return RangesOnBox(problem, proved.leaves[0].final, queries);
   base::ParallelFor(proved.leaves.size(), options.jobs, [&](size_t i) {
     answers[i] = Runner(*made.value(), options, options.flow, proved.leaves[i].initial, problem.initial, stop)
                      .Ask(queries);
@@ -166,8 +167,9 @@ Outcome ByInvariant(const Problem& problem, invariants::Found found) {
   return proved;
 }
 
-// Events make tubes slow: what is plainly false, and what always holds, need not wait for them.
-base::Result<Outcome> DecideWithEvents(const Problem& problem, const ProverOptions& options,
+// Events and controllers that switch make tubes slow: what is plainly false, and what can be shown without a tube,
+// need not wait for them.
+base::Result<Outcome> DecideWithSwitches(const Problem& problem, const ProverOptions& options,
                                        const base::StopToken& stop) {
   auto made = Stages::Of(problem);
   if (!made.ok()) return made.error();
@@ -176,6 +178,7 @@ base::Result<Outcome> DecideWithEvents(const Problem& problem, const ProverOptio
   Trajectories trajectories = std::move(compiled).value();
   Search search(*made.value(), options, trajectories, stop);
   if (auto refuted = search.Run(std::min<size_t>(options.samples, 32))) return Outcome{std::move(*refuted)};
+  if (auto proved = ProveByCells(problem, trajectories, options, stop)) return Outcome{std::move(*proved)};
   auto found = invariants::Find(problem, trajectories, options.seed, stop);
   if (!found) return DecideByTubes(problem, options, stop);
   if (found->claims.size() == problem.claims.size()) return ByInvariant(problem, std::move(*found));
@@ -202,8 +205,8 @@ base::Result<Outcome> DecideWithEvents(const Problem& problem, const ProverOptio
 
 base::Result<Outcome> Decide(const Problem& problem, const ProverOptions& options,
                              const base::StopToken& stop) {
-  return problem.events.empty() ? DecideByTubes(problem, options, stop)
-                                : DecideWithEvents(problem, options, stop);
+  const bool switches = !problem.events.empty() || ChoosesLaws(problem);
+  return switches ? DecideWithSwitches(problem, options, stop) : DecideByTubes(problem, options, stop);
 }
 
 }  // namespace rondo::reach

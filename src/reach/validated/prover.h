@@ -8,6 +8,7 @@
 #include "base/stop.h"
 #include "reach/problem/invariant.h"
 #include "reach/problem/numeric.h"
+#include "reach/problem/paving.h"
 #include "reach/validated/flow/flow.h"
 #include "verdict/verdict.h"
 
@@ -54,17 +55,20 @@ struct Leaf {
   std::vector<StepRecord> steps;
 };
 
-/// Says that every claim holds: those that the invariant implies by it, the others part by part (leaves and
-/// empty parts together are all of the initial set).
+/// Says that every claim holds: by cells, or those that the invariant implies by it and the others part by part
+/// (leaves and empty parts together are all of the initial set).
 struct Proved {
   std::optional<Invariant> invariant;  ///< kept at all times
-  /// If every claim follows from the invariant: one, without steps, with a box around it.
+  std::optional<Paving> paving;        ///< holds the states at the instants of the controller
+  /// If no tube was needed: one, without steps, with a box around all states.
   std::vector<Leaf> leaves;
   std::vector<std::vector<Cut>> empty;  ///< parts in which nothing satisfies what is assumed
   size_t steps = 0;                     ///< of the flow, over all leaves
 
-  /// Reports whether every claim follows from the invariant.
-  bool IsByInvariant() const { return invariant && leaves.size() == 1 && leaves[0].steps.empty(); }
+  /// Reports whether every claim follows from the invariant or the paving.
+  bool IsWithoutTube() const {
+    return (invariant || paving) && leaves.size() == 1 && leaves[0].steps.empty();
+  }
 };
 
 /// Is a trajectory on which a claim fails; enclosed rigorously at that time if `certain`.
@@ -96,6 +100,7 @@ struct ProverOptions {
   size_t samples = 200;       ///< trajectories that look for a violation first
   uint64_t seed = 1;          ///< of the trajectories that look for a violation
   unsigned jobs = 0;          ///< threads; 0: as many as the machine has cores
+  bool wide = false;          ///< whether sets are followed however wide errors make them
   bool keep_tube = true;      ///< whether leaves keep their boxes, for pictures
   /// Called now and then with the number of parts that are done and of those that are open.
   std::function<void(size_t, size_t)> progress;
