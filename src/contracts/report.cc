@@ -21,6 +21,12 @@ std::string StateTable(const ContractResult& r, const std::vector<double>& state
 
 const reach::Problem& ProblemOf(const ContractResult& r) { return r.made.problem; }
 
+// How all claims were shown.
+const char* MethodOf(const reach::Proved& proved) {
+  if (!proved.IsWithoutTube()) return "tube";
+  return proved.paving ? "cells" : "invariant";
+}
+
 }  // namespace
 
 void ReportContract(const ContractResult& r, diag::Diagnostics& diagnostics) {
@@ -65,11 +71,12 @@ std::string ContractTable(const std::vector<ContractResult>& results) {
   std::string rejected;
   for (const ContractResult& r : results) {
     std::string parts;
-    if (r.outcome) {
-      if (const auto* proved = std::get_if<reach::Proved>(&*r.outcome))
-        parts = fmt::format("{}", proved->leaves.size());
-    }
     std::string note = r.same_as.empty() ? "" : fmt::format(" (as {})", r.same_as);
+    const auto* proved = r.outcome ? std::get_if<reach::Proved>(&*r.outcome) : nullptr;
+    if (proved != nullptr && !proved->IsWithoutTube()) parts = fmt::format("{}", proved->leaves.size());
+    if (proved != nullptr && proved->IsWithoutTube())
+      note +=
+          proved->paving ? fmt::format(" (by {} cells)", proved->paving->cells.size()) : " (by an invariant)";
     if (!r.anywhere.empty() && r.graph == nullptr && VerdictOf(r) == verdict::Verdict::kProved)
       note += fmt::format(" (whatever {})", fmt::join(r.anywhere, ", "));
     const std::string certified = r.IsCertified() ? fmt::format("{:.3f} s", r.certify_seconds)
@@ -98,6 +105,7 @@ nlohmann::json ToJson(const ContractResult& r) {
   }
   if (!r.outcome) return out;
   if (const auto* proved = std::get_if<reach::Proved>(&*r.outcome)) {
+    out["method"] = MethodOf(*proved);
     out["parts"] = proved->leaves.size();
     out["steps"] = proved->steps;
     nlohmann::json final = nlohmann::json::object();

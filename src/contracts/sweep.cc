@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <deque>
 #include <nlohmann/json.hpp>
 
@@ -37,6 +38,7 @@ class Sweeper {
     std::deque<Task> open{{range, 1}};
     for (; !open.empty(); open.pop_front()) {
       const auto [next, leaves] = open.front();
+      Say(range, next);
       SweepPart part{next.lo, next.hi, Verdict::kUnknown, 0, "", false};
       if (!stop_.StopRequested()) Decide(part, leaves);
       const double middle = next.Middle();
@@ -70,6 +72,14 @@ class Sweeper {
   }
 
  private:
+  // How much of the range is decided, and what is looked at.
+  void Say(interval::Interval range, interval::Interval next) const {
+    if (!options_.swept) return;
+    double decided = 0;
+    for (const SweepPart& part : parts_) decided += part.to - part.from;
+    options_.swept(decided / std::fmax(range.Width(), 1e-300), next.lo, next.hi);
+  }
+
   static constexpr size_t kSomeLeaves = 64;
   static constexpr size_t kMostLeaves = 1024;
 
@@ -84,7 +94,6 @@ class Sweeper {
     prover.most_leaves = leaves;
     if (leaves == 1) prover.samples = 40;
     const auto outcome = reach::Decide(problem, prover, stop_);
-    if (options_.progress) options_.progress(parts_.size(), 1);
     if (!outcome.ok()) return;
     if (const auto* proved = std::get_if<reach::Proved>(&outcome.value())) {
       part.verdict = Verdict::kProved;
@@ -125,7 +134,7 @@ class Sweeper {
 
 Sweep SweepContract(const ContractResult& contract, const std::string& parameter, size_t parts,
                     const DecideOptions& options, const base::StopToken& stop) {
-  Sweep sweep{contract.made.problem.name, parameter, contract.impossible, false, {}};
+  Sweep sweep{.contract = contract.made.problem.name, .parameter = parameter, .trouble = contract.impossible};
   if (!sweep.trouble.empty()) return sweep;
   const auto& names = contract.made.names;
   const auto it = std::ranges::find(names, parameter);
@@ -142,6 +151,7 @@ Sweep SweepContract(const ContractResult& contract, const std::string& parameter
   sweeper.Run(range);
   sweep.parts = sweeper.Parts();
   sweep.out_of_time = limited.StopRequested() && !stop.cancelled();
+  sweep.stopped = stop.cancelled();
   return sweep;
 }
 
@@ -157,6 +167,7 @@ std::string ToText(const Sweep& sweep) {
     text += '\n';
   }
   if (sweep.out_of_time) text += "  out of time (--timeout)\n";
+  if (sweep.stopped) text += "  stopped\n";
   return text;
 }
 
@@ -164,6 +175,7 @@ nlohmann::json ToJson(const Sweep& sweep) {
   nlohmann::json out{{"contract", sweep.contract}, {"parameter", sweep.parameter}};
   if (!sweep.trouble.empty()) out["reason"] = sweep.trouble;
   if (sweep.out_of_time) out["reason"] = "out of time (--timeout)";
+  if (sweep.stopped) out["reason"] = "stopped";
   nlohmann::json list = nlohmann::json::array();
   for (const SweepPart& part : sweep.parts) {
     nlohmann::json one{{"from", part.from}, {"to", part.to}, {"verdict", verdict::Name(part.verdict)}};

@@ -23,9 +23,11 @@ struct SweepPart {
 /// Holds what is known for the whole range of a parameter.
 struct Sweep {
   std::string contract, parameter;
-  std::string trouble;           ///< why there is no answer, if there is none
-  bool out_of_time = false;      ///< more time would decide more
-  std::vector<SweepPart> parts;  ///< ascending; neighbours differ in their verdict, or in being certified
+  std::string trouble = {};  ///< why there is no answer, if there is none
+  bool out_of_time = false;  ///< more time would decide more
+  bool stopped = false;      ///< somebody stopped it before its end
+  std::vector<SweepPart> parts =
+      {};  ///< ascending; neighbours differ in their verdict, or in being certified
 };
 
 /// Decides the contract for parts of the range of the parameter: wide parts first, hard ones last.

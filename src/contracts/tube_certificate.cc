@@ -70,7 +70,8 @@ nlohmann::json ToJson(const reach::Invariant& invariant) {
     for (const auto& value : one.mode) values.push_back(value.ToString());
     nlohmann::json conjuncts = nlohmann::json::array();
     for (const reach::Conjunct& c : one.conjuncts) {
-      nlohmann::json json{{"index", c.index}, {"comparison", c.comparison}, {"negated", c.negated}, {"bound", c.bound}};
+      nlohmann::json json{
+          {"index", c.index}, {"comparison", c.comparison}, {"negated", c.negated}, {"bound", c.bound}};
       for (const auto& [name, source] : kSources) {
         if (source == c.source) json["of"] = name;
       }

@@ -107,9 +107,14 @@ ExitStatus Run(const Options& options) {
       }
       const auto verdict = Tube(one.path, one.file, session, stop);
       stopped = stopped || stop.cancelled();
-      list.push_back({{"file", one.path}, {"accepted", verdict.accepted}, {"steps", verdict.steps}});
-      if (verdict.accepted)
-        text += fmt::format("{}: accepted: the contract holds ({} steps)\n", one.path, verdict.steps);
+      list.push_back({{"file", one.path},
+                      {"accepted", verdict.accepted},
+                      {"steps", verdict.steps},
+                      {"boxes", verdict.boxes}});
+      if (!verdict.accepted) continue;
+      text += fmt::format("{}: accepted: the contract holds ({} {})\n", one.path,
+                          verdict.steps > 0 ? verdict.steps : verdict.boxes,
+                          verdict.steps > 0 ? "steps" : "boxes");
       continue;
     }
     stopped = stopped || one.tally.stopped;

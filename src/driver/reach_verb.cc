@@ -154,8 +154,9 @@ class Run {
         side = interval::Meet(side, {loose_->least.ToDouble(), loose_->most.ToDouble()});
         contracts::DecideOptions options{
             options_.timeout, options_.jobs, options_.seed, !options_.no_certify, {}};
-        options.progress = [&](size_t parts, size_t) {
-          line.Show(fmt::format("{}: {} parts of the range", r.made.problem.name, parts));
+        options.swept = [&](double share, double from, double to) {
+          line.Show(fmt::format("{}: {:.0f} % of the range decided, now {} in [{:.6g}, {:.6g}]",
+                                r.made.problem.name, 100 * share, loose_->name, from, to));
         };
         if (side.IsEmpty()) r.impossible = fmt::format("`{}` is never in this range", loose_->name);
         const contracts::Sweep sweep =

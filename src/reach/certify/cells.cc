@@ -61,7 +61,8 @@ class Checking {
       const auto& cell = paving_.cells[k];
       if (cell.size() != paving_.states.size()) return "a cell of the paving has another dimension";
       for (size_t i = 0; i < cell.size(); ++i) {
-        if (cell[i] + size_t{1} >= paving_.edges[i].size()) return "a cell of the paving is no cell of its grid";
+        if (cell[i] + size_t{1} >= paving_.edges[i].size())
+          return "a cell of the paving is no cell of its grid";
       }
       known_.emplace(cell, k);
     }
@@ -123,7 +124,8 @@ class Checking {
   }
 
   // Calls `visit` with cells of the grid that together enclose the box. False if the grid does not.
-  bool Cover(const interval::Box& states, const std::function<bool(const std::vector<uint32_t>&)>& visit) const {
+  bool Cover(const interval::Box& states,
+             const std::function<bool(const std::vector<uint32_t>&)>& visit) const {
     std::vector<std::vector<uint32_t>> sides;
     for (size_t i = 0; i < paving_.states.size(); ++i) {
       const Interval side = states[paving_.states[i]];
@@ -236,12 +238,12 @@ class Checking {
   const Paving& paving_;
   const base::StopToken& stop_;
   Problem period_;
-  std::vector<TermId> at_end_;                        ///< claims about the horizon
-  std::vector<std::pair<size_t, Interval>> others_;   ///< states that the grid does not divide
-  std::map<std::vector<uint32_t>, size_t> known_;     ///< the cells
+  std::vector<TermId> at_end_;                       ///< claims about the horizon
+  std::vector<std::pair<size_t, Interval>> others_;  ///< states that the grid does not divide
+  std::map<std::vector<uint32_t>, size_t> known_;    ///< the cells
   std::vector<size_t> starts_;
-  std::vector<interval::Box> ends_;                   ///< by cell
-  std::vector<std::vector<size_t>> next_;             ///< by cell
+  std::vector<interval::Box> ends_;        ///< by cell
+  std::vector<std::vector<size_t>> next_;  ///< by cell
 };
 
 }  // namespace

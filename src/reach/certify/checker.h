@@ -46,10 +46,10 @@ struct PartRecord {
 /// Is what a proof of a problem leaves behind. Nothing in it is believed: its parts must be all of the
 /// initial set (the leaves of one binary tree of cuts), and its steps are what is tried first.
 struct Certificate {
-  /// Holds at all times; the claims that follow from it are shown by it, the others by the parts.
-  std::optional<Invariant> invariant;
-  std::optional<Paving> paving;   ///< shows all claims; then there is nothing else
   std::vector<PartRecord> parts;  ///< none if every claim follows from the invariant
+  /// Holds at all times; the claims that follow from it are shown by it, the others by the parts.
+  std::optional<Invariant> invariant = std::nullopt;
+  std::optional<Paving> paving = std::nullopt;  ///< shows all claims; then there is nothing else
 };
 
 /// Is the answer of the checker.

@@ -116,7 +116,7 @@ class Follower {
   size_t next_hint_ = 0;
   size_t symbols_ = 0;
   size_t order_ = 0;
-  ReachSet last_;    ///< where it stopped, for WorstSide
+  ReachSet last_;  ///< where it stopped, for WorstSide
   interval::Box end_;
   double time_ = 0;  ///< how far it is, in seconds: roughly, for messages
   size_t steps_ = 0;

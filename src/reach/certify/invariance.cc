@@ -223,6 +223,13 @@ class Checking {
     return true;
   }
 
+  // Cuts off what is certainly below zero: only the rest matters.
+  interval::Box WhereNotBelow(TermId term, interval::Box box) const {
+    const TermId zero = arena_.Number(arena_.Real(), Rational(0));
+    (void)Contract(arena_, arena_.Le(zero, term), variables_, box);
+    return box;
+  }
+
   using Values = std::vector<Interval>;
 
   Interval TermOn(const Place& place, const Values& values, size_t k) const {
@@ -312,9 +319,10 @@ class Checking {
     const std::vector<TermId> known = Known(chain);
     for (size_t k = 0; k < to.terms.size(); ++k) {
       if (Follows(to.terms[k], known)) continue;
-      const bool shown = Everywhere(box, kMostBoxes, [&](const interval::Box& part) {
-        return TermOn(to, ValuesOn(to.program, part), k).hi <= 0 || !MayBe(chain, part);
-      });
+      const bool shown =
+          Everywhere(WhereNotBelow(to.terms[k], box), kMostBoxes, [&](const interval::Box& part) {
+            return TermOn(to, ValuesOn(to.program, part), k).hi <= 0 || !MayBe(chain, part);
+          });
       if (!shown) return false;
     }
     return true;
@@ -343,7 +351,8 @@ class Checking {
     for (size_t k = 0; k < place.terms.size(); ++k) {
       if (!IsKept(place, k)) return "the flow may break the invariant";
     }
-    return CheckEvents({.from = &place, .at_start = false, .ways = {}, .places = {PlaceOf(place.mode)}}, place.box);
+    return CheckEvents({.from = &place, .at_start = false, .ways = {}, .places = {PlaceOf(place.mode)}},
+                       place.box);
   }
 
   Interval RateOf(const Place& place, const Values& values, size_t k) const {
@@ -351,19 +360,19 @@ class Checking {
     const auto gradient = GradientOn(place.program, values, place.program.outputs[n + k], n);
     Interval rate = Interval::Point(0);
     for (size_t i = 0; i < n; ++i) {
-      if (gradient[i] != Interval::Point(0))
-        rate = rate + gradient[i] * values[place.program.outputs[i]];
+      if (gradient[i] != Interval::Point(0)) rate = rate + gradient[i] * values[place.program.outputs[i]];
     }
     return rate;
   }
 
   // A term falls wherever it is zero and the invariant holds; or it does not rise anywhere near the invariant.
   bool IsKept(const Place& place, size_t k) {
-    const bool falls = Everywhere(place.box, kMostBoxes, [&](const interval::Box& part) {
-      const Values values = ValuesOn(place.program, part);
-      return !TermOn(place, values, k).Contains(0) || RateOf(place, values, k).hi < 0 ||
-             !MayBeIn(place, values, 0);
-    });
+    const bool falls =
+        Everywhere(WhereNotBelow(place.terms[k], place.box), kMostBoxes, [&](const interval::Box& part) {
+          const Values values = ValuesOn(place.program, part);
+          return !TermOn(place, values, k).Contains(0) || RateOf(place, values, k).hi < 0 ||
+                 !MayBeIn(place, values, 0);
+        });
     if (falls) return true;
     return Everywhere(place.box, kMostBoxes, [&](const interval::Box& part) {
       const Values values = ValuesOn(place.program, part);
@@ -382,7 +391,8 @@ class Checking {
       return formula.Check([&](size_t k) {
         const Interval range = values[place.program.outputs[first + k]];
         return follows[k] ? Interval{std::min(range.lo, 0.0), std::min(range.hi, 0.0)} : range;
-      }) == Truth::kTrue || !MayBeIn(place, values, 0);
+      }) == Truth::kTrue ||
+             !MayBeIn(place, values, 0);
     });
   }
 

@@ -12,6 +12,7 @@ namespace {
 
 constexpr size_t kRuns = 24;
 constexpr size_t kSlots = 16;
+constexpr size_t kMostInstants = 1000;  // of a run that are looked at: long runs with many events say no more
 constexpr double kAround[] = {0.01, 0.05, 0.2, 1};  // shares of what was visited
 
 double Uniform(std::mt19937_64& random, Interval side) {
@@ -54,6 +55,7 @@ std::vector<interval::Box> Visited(const Problem& problem, const Modes& modes, c
   for (size_t run = 0; run < kRuns; ++run) {
     const Execution execution = RandomExecution(problem, random);
     if (trajectories.MissAssumed(execution.start) > 1e-9) continue;
+    size_t instants = 0;
     trajectories.Run(
         execution, problem.horizon.ToDouble() / 400,
         [&](double, std::span<const double> state) {
@@ -66,7 +68,7 @@ std::vector<interval::Box> Visited(const Problem& problem, const Modes& modes, c
             for (size_t i = 0; i < state.size(); ++i)
               visited[m][i] = {std::min(visited[m][i].lo, state[i]), std::max(visited[m][i].hi, state[i])};
           }
-          return !stop.StopRequested();
+          return ++instants < kMostInstants && !stop.StopRequested();
         },
         1e-9);
   }
@@ -85,7 +87,8 @@ std::vector<Conjunct> CandidatesFor(const Problem& problem, const Modes& modes, 
         all.push_back({.source = source, .index = index, .comparison = k, .negated = negated});
     }
   };
-  for (size_t c = 0; c < problem.claims.size(); ++c) comparisons(Source::kClaim, c, problem.claims[c].formula);
+  for (size_t c = 0; c < problem.claims.size(); ++c)
+    comparisons(Source::kClaim, c, problem.claims[c].formula);
   for (size_t e = 0; e < problem.events.size(); ++e)
     comparisons(Source::kEvent, e, problem.events[e].condition);
   const auto bounds = [&](size_t i, Interval side) {

@@ -14,9 +14,9 @@ namespace rondo::reach::invariants {
 namespace {
 
 constexpr size_t kMostModes = 32;
-constexpr size_t kMostBoxes = 4000;    // to show that something always holds
-constexpr size_t kFewBoxes = 400;      // to show that something never happens
-constexpr double kNearby = 0x1p-20;    // how far around an invariant rates are looked at
+constexpr size_t kMostBoxes = 4000;  // to show that something always holds
+constexpr size_t kFewBoxes = 400;    // to show that something never happens
+constexpr double kNearby = 0x1p-20;  // how far around an invariant rates are looked at
 
 // A comparison that may always hold in a mode: `term <= 0`.
 struct Candidate {
@@ -84,7 +84,8 @@ class Search {
     std::vector<Mode> all{modes_.start()};
     for (size_t at = 0; at < all.size(); ++at) {
       if (all.size() > kMostModes) return false;
-      Place place{.mode = all[at], .rates = {}, .candidates = {}, .leaving = {}, .stays = arena_.True(), .box = {}};
+      Place place{
+          .mode = all[at], .rates = {}, .candidates = {}, .leaving = {}, .stays = arena_.True(), .box = {}};
       for (const TermId rate : problem_.rates) {
         place.rates.push_back(modes_.In(place.mode, rate));
         if (!IsContinuous(arena_, place.rates.back())) return false;
@@ -136,7 +137,8 @@ class Search {
     if (!normal.ok() || arena_.IsPartial(assume)) return false;
     std::vector<TermId> all{Weakened(normal.value(), normal.value().root, false)};
     for (size_t i = 0; i < problem_.states.size(); ++i) {
-      if (std::isfinite(problem_.initial[i].hi)) all.push_back(AtMost(problem_.states[i], problem_.initial[i].hi));
+      if (std::isfinite(problem_.initial[i].hi))
+        all.push_back(AtMost(problem_.states[i], problem_.initial[i].hi));
       if (std::isfinite(problem_.initial[i].lo))
         all.push_back(AtMost(arena_.Neg(problem_.states[i]), -problem_.initial[i].lo));
     }
@@ -160,7 +162,8 @@ class Search {
         const auto term = TermOf(problem_, modes_, place.mode, conjunct);
         if (!term.ok() || arena_.IsNumber(term.value()) || !IsContinuous(arena_, term.value())) continue;
         const auto rate = RateOf(arena_, term.value(), problem_.states, place.rates);
-        if (!rate || std::ranges::find(place.candidates, term.value(), &Candidate::term) != place.candidates.end())
+        if (!rate ||
+            std::ranges::find(place.candidates, term.value(), &Candidate::term) != place.candidates.end())
           continue;
         place.candidates.push_back({conjunct, term.value(), *rate});
       }
@@ -195,9 +198,10 @@ class Search {
 
   // Does `term <= 0` follow from one of these facts, by terms alone? Rounding says nothing of what is exactly so.
   bool Follows(TermId facts, TermId term) {
-    const std::vector<TermId> all = arena_.op(facts) == expr::Op::kAnd
-                                        ? std::vector<TermId>(arena_.args(facts).begin(), arena_.args(facts).end())
-                                        : std::vector<TermId>{facts};
+    const std::vector<TermId> all =
+        arena_.op(facts) == expr::Op::kAnd
+            ? std::vector<TermId>(arena_.args(facts).begin(), arena_.args(facts).end())
+            : std::vector<TermId>{facts};
     return std::ranges::any_of(all, [&](TermId fact) {
       if (arena_.op(fact) != expr::Op::kLe) return false;
       const TermId distance = arena_.Sub(arena_.Sub(arena_.arg(fact, 0), arena_.arg(fact, 1)), term);
@@ -285,9 +289,8 @@ class Search {
       }
     }
     for (size_t c = 0; c < problem_.claims.size(); ++c) {
-      const bool implied = std::ranges::all_of(places_, [&](Place& place) {
-        return Implies(place, problem_.claims[c].formula);
-      });
+      const bool implied = std::ranges::all_of(
+          places_, [&](Place& place) { return Implies(place, problem_.claims[c].formula); });
       if (implied) found.claims.push_back(c);
     }
     if (found.claims.empty()) return std::nullopt;

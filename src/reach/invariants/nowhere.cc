@@ -33,9 +33,7 @@ bool HoldsNowhere(expr::Arena& arena, TermId formula, const std::vector<TermId>&
   if (!normal.ok()) return false;
   const auto terms = Compile(arena, variables, normal.value().terms);
   if (!terms.ok()) return false;
-  const auto check = [&](const interval::Box& part) {
-    return CheckBox(terms.value(), normal.value(), part);
-  };
+  const auto check = [&](const interval::Box& part) { return CheckBox(terms.value(), normal.value(), part); };
   std::vector<interval::Box> open{box};
   interval::Box middle(box.size());
   for (size_t boxes = 0; !open.empty(); ++boxes) {

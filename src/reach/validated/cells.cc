@@ -91,8 +91,8 @@ class Exploration {
 
   // Edges on both ends of where states begin, so that these make up whole cells.
   bool MakeGrid(size_t count) {
-    const auto visited =
-        invariants::Visited(problem_, all_->modes(), {all_->modes().start()}, trajectories_, options_.seed, stop_)[0];
+    const auto visited = invariants::Visited(problem_, all_->modes(), {all_->modes().start()}, trajectories_,
+                                             options_.seed, stop_)[0];
     if (visited.empty()) return false;
     paving_ = {.states = live_, .edges = {}, .cells = {}};
     for (const size_t i : live_) {
@@ -106,7 +106,8 @@ class Exploration {
       const double before = std::ceil((first - hull.lo + hull.Width() / 2) / width);
       const double after = std::ceil((hull.hi + hull.Width() / 2 - first) / width);
       std::vector<double>& edges = paving_.edges.emplace_back();
-      for (double k = -before; k <= after; ++k) edges.push_back(k == parts && parts > 0 ? start.hi : first + k * width);
+      for (double k = -before; k <= after; ++k)
+        edges.push_back(k == parts && parts > 0 ? start.hi : first + k * width);
       if (!std::ranges::is_sorted(edges)) return false;
     }
     return true;

@@ -170,18 +170,20 @@ Outcome ByInvariant(const Problem& problem, invariants::Found found) {
 // Events and controllers that switch make tubes slow: what is plainly false, and what can be shown without a tube,
 // need not wait for them.
 base::Result<Outcome> DecideWithSwitches(const Problem& problem, const ProverOptions& options,
-                                       const base::StopToken& stop) {
+                                         const base::StopToken& stop) {
   auto made = Stages::Of(problem);
   if (!made.ok()) return made.error();
   auto compiled = Trajectories::Of(problem);
   if (!compiled.ok()) return compiled.error();
   Trajectories trajectories = std::move(compiled).value();
   Search search(*made.value(), options, trajectories, stop);
-  if (auto refuted = search.Run(std::min<size_t>(options.samples, 32))) return Outcome{std::move(*refuted)};
+  // A few samples for what is plainly false, some more before a tube.
+  if (auto refuted = search.Run(std::min<size_t>(options.samples, 8))) return Outcome{std::move(*refuted)};
   if (auto proved = ProveByCells(problem, trajectories, options, stop)) return Outcome{std::move(*proved)};
   auto found = invariants::Find(problem, trajectories, options.seed, stop);
+  if (found && found->claims.size() == problem.claims.size()) return ByInvariant(problem, std::move(*found));
+  if (auto refuted = search.Run(std::min<size_t>(options.samples, 32))) return Outcome{std::move(*refuted)};
   if (!found) return DecideByTubes(problem, options, stop);
-  if (found->claims.size() == problem.claims.size()) return ByInvariant(problem, std::move(*found));
   Problem rest = problem;
   std::vector<size_t> left;  // of the claims, by their index in `rest`
   rest.claims.clear();

@@ -1,6 +1,22 @@
 #include "reach/certify/models/image.h"
 
+#include "reach/certify/models/straight.h"
+#include "reach/certify/models/upward.h"
+
 namespace rondo::reach::certify {
+
+// Each open kink in turn is enclosed on what the set shows of its argument, those before it being sums by then.
+bool Image::OfStraight(Program program, uint32_t open, const OnBox& on, const ReachSet& set,
+                       const interval::Box& inputs) {
+  for (; open < program.code.size(); open = OpenKink(program, on, open + 1)) {
+    Image argument;
+    if (!argument.Of(ArgumentOf(program, open), set, inputs)) return false;
+    const Interval range = argument.Range(0);
+    if (!IsFinite(range)) return false;
+    Straighten(program, open, range);
+  }
+  return Of(program, set, inputs);
+}
 
 bool Image::Of(const Program& program, const ReachSet& set, const interval::Box& inputs) {
   const size_t n = set.states();
@@ -12,6 +28,8 @@ bool Image::Of(const Program& program, const ReachSet& set, const interval::Box&
   box.insert(box.end(), inputs.begin(), inputs.end());
   OnBox on;
   if (!Linearise(program, box, count, on)) return false;
+  if (const uint32_t open = OpenKink(program, on, 0); open < program.code.size())
+    return OfStraight(program, open, on, set, inputs);
   const Algebra algebra(*basis_, 0);
   std::vector<Model> variables;
   for (const std::vector<double>& p : set.polynomials) variables.push_back(algebra.InSymbols(p));

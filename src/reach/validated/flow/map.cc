@@ -1,7 +1,9 @@
 #include "reach/validated/flow/map.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "reach/validated/flow/kinks.h"
 #include "reach/validated/series/bound.h"
 
 namespace rondo::reach {
@@ -19,6 +21,23 @@ Map::Map(const Program& program, size_t states, std::vector<Interval> inputs,
       error_(static_cast<Eigen::Index>(states)),
       more_(program.outputs.size()) {}
 
+// Without maxima and absolute values that are open, each enclosed on what the set itself shows of its argument.
+bool Map::Replace(const FlowSet& set) {
+  replaced_ = program_;
+  for (uint32_t n = 0; n < program_.code.size(); ++n) {
+    const CodeOp op = program_.code[n].op;
+    if (branches_[n] != Branch::kEither || (op != CodeOp::kMax && op != CodeOp::kAbs)) continue;
+    const Program compared = ComparedAt(replaced_, n);
+    Map before(compared, states_, inputs_, monomials_);
+    if (!before.Apply(set)) return false;
+    const Interval range = before.Range(0);
+    if (!std::isfinite(range.lo) || !std::isfinite(range.hi)) return false;
+    ReplaceKink(replaced_, n, range);
+  }
+  replacement_ = std::make_unique<Map>(replaced_, states_, inputs_, monomials_);
+  return replacement_->Apply(set);
+}
+
 bool Map::Apply(const FlowSet& set) {
   const auto rows = static_cast<Eigen::Index>(program_.outputs.size());
   const auto columns = static_cast<Eigen::Index>(states_);
@@ -28,7 +47,12 @@ bool Map::Apply(const FlowSet& set) {
     box_.SetVariable(i, 0, RangeOf(*monomials_, set.Polynomial(i)) + Interval{-error, error});
   }
   for (size_t w = 0; w < inputs_.size(); ++w) box_.SetVariable(states_ + w, 0, inputs_[w]);
+  replacement_ = nullptr;
   if (!box_.Decide(branches_, held_)) return false;
+  const bool open = std::ranges::any_of(program_.kinks, [&](uint32_t n) {
+    return branches_[n] == Branch::kEither && program_.code[n].op != CodeOp::kChoose;
+  });
+  if (open) return Replace(set);
   models_.Begin(set.degree, 0);
   for (size_t i = 0; i < states_; ++i) models_.SetVariable(i, 0, set.Polynomial(i), 0);
   for (size_t w = 0; w < inputs_.size(); ++w) {
@@ -65,6 +89,7 @@ bool Map::Apply(const FlowSet& set) {
 }
 
 Interval Map::Range(size_t output) const {
+  if (replacement_) return interval::Meet(replacement_->Range(output), box_.Of(program_.outputs[output], 0));
   const auto row = static_cast<Eigen::Index>(output);
   double sum = images_.row(row).cwiseAbs().sum() + more_[output];
   sum += centre_.row(row).cwiseAbs().dot(error_) * Roundings(static_cast<double>(states_) + 2);
@@ -76,6 +101,7 @@ Interval Map::Range(size_t output) const {
 }
 
 void Map::Finish(const FlowSet& set, FlowSet& next, Eigen::Index capacity) const {
+  if (replacement_) return replacement_->Finish(set, next, capacity);
   next.dimension = set.dimension;
   next.degree = set.degree;
   next.count = set.count;

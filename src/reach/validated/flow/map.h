@@ -10,8 +10,9 @@
 namespace rondo::reach {
 
 /// Computes images of sets under a program: what a controller computes at an instant, or an expression about
-/// the state. Variables: states, then inputs that can be anything within their bounds. Functions with kinks
-/// are enclosed by linear functions where it is not known on which side the set lies.
+/// the state. Variables: states, then inputs that can be anything within their bounds. Where it is not known on
+/// which side of a kink the set lies, a maximum or an absolute value is one linear function for polynomials and
+/// errors alike, and a number that may be different at each point (`ReplaceKink`); a choice is either value.
 class Map {
  public:
   Map(const Program& program, size_t states, std::vector<Interval> inputs,
@@ -27,6 +28,11 @@ class Map {
   void Finish(const FlowSet& set, FlowSet& next, Eigen::Index capacity) const;
 
  private:
+  bool Replace(const FlowSet& set);
+
+  /// Takes the place of this one while kinks are replaced.
+  std::unique_ptr<Map> replacement_;
+  Program replaced_;  ///< what that computes
   const Program& program_;
   size_t states_;
   std::vector<Interval> inputs_;

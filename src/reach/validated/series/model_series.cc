@@ -269,56 +269,9 @@ void ModelSeries::KinkNode(size_t node, size_t order, Branch branch, Interval he
     out[0] = middle;
     return;
   }
-  if (c.op == CodeOp::kAbs) {
-    // |x| = slope * x + offset +- offset between l < 0 < u: the chord, lowered by half its largest error.
-    const Interval x = Range(c.a, 0);
-    if (!(x.lo < 0 && x.hi > 0)) return copy(c.a, x.lo >= 0 ? 1 : -1);
-    const double slope = x.lo < x.hi ? (x.hi + x.lo) / (x.hi - x.lo) : 0;
-    // Any slope will do as long as the errors at l, 0 and u are covered: g(x) = |x| - slope x is convex
-    // pieces.
-    const Interval at_l = -Interval::Point(x.lo) - Interval::Point(slope) * Interval::Point(x.lo);
-    const Interval at_u = Interval::Point(x.hi) - Interval::Point(slope) * Interval::Point(x.hi);
-    const Interval all = interval::Hull(interval::Hull(at_l, at_u), Interval::Point(0));
-    const auto [offset, offset_error] = Centred(all);
-    const double* v = Values(c.a, 0);
-    for (size_t i = 0; i < count_; ++i) out[i] = slope * v[i];
-    out[0] += offset;
-    const double norm = Norm(c.a, 0);
-    Radius(node, 0) = Above(std::fabs(slope) * Radius(c.a, 0) + offset_error +
-                            (std::fabs(slope) * norm + std::fabs(out[0])) * Roundings(3));
-    return;
-  }
-  const bool max = c.op == CodeOp::kMax;
-  const double* first = Values(max ? c.a : c.b, 0);
-  const double* second = Values(max ? c.b : c.c, 0);
-  if (max) {
-    // max(a, b) = (a + b + |a - b|) / 2, with |d| = slope d + offset +- error as above.
-    Model d;
-    d.polynomial.resize(count_);
-    double norm = 0;
-    for (size_t i = 0; i < count_; ++i) {
-      d.polynomial[i] = first[i] - second[i];
-      norm += std::fabs(first[i]) + std::fabs(second[i]);
-    }
-    const double radii = Above(Radius(c.a, 0) + Radius(c.b, 0));
-    d.radius = Above(radii + norm * Roundings(2));
-    const Interval x = RangeOfParts(d.polynomial, d.radius);
-    if (!(x.lo < 0 && x.hi > 0)) {
-      // One of them after all, on the polynomials.
-      const size_t larger = x.lo >= 0 ? c.a : c.b;
-      return copy(larger, 1);
-    }
-    const double slope = (x.hi + x.lo) / (x.hi - x.lo);
-    const Interval at_l = -Interval::Point(x.lo) - Interval::Point(slope) * Interval::Point(x.lo);
-    const Interval at_u = Interval::Point(x.hi) - Interval::Point(slope) * Interval::Point(x.hi);
-    const Interval all = interval::Hull(interval::Hull(at_l, at_u), Interval::Point(0));
-    const auto [offset, offset_error] = Centred(all);
-    for (size_t i = 0; i < count_; ++i) out[i] = 0.5 * (first[i] + second[i] + slope * d.polynomial[i]);
-    out[0] += 0.5 * offset;
-    Radius(node, 0) = Above(0.5 * (radii + std::fabs(slope) * d.radius + offset_error) +
-                            (2 * norm + std::fabs(out[0]) + std::fabs(offset)) * Roundings(8));
-    return;
-  }
+  CHECK(c.op == CodeOp::kChoose);  // maps replace maxima and absolute values that are open (flow/kinks.h)
+  const double* first = Values(c.b, 0);
+  const double* second = Values(c.c, 0);
   // Either value: their mean, and half their difference as error.
   double apart = 0;
   double norm = 0;
