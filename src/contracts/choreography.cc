@@ -4,6 +4,8 @@
 
 #include <chrono>
 
+#include "choreo/prove/runs.h"
+
 namespace rondo::contracts {
 
 using verdict::Verdict;
@@ -52,6 +54,8 @@ ChoreographyProof ProveChoreography(choreo::Graph& graph, expr::Arena& arena,
   proof.proofs = choreo::Prove(proof.obligations, graph, arena, prove);
   proof.interrupted = options.stop.cancelled();
   choreo::ConfirmWitnesses(proof.obligations, arena, proof.proofs);
+  if (options.progress && CountsOf(proof).fails > 0) options.progress("looking for runs");
+  choreo::FindRuns(proof.obligations, graph, arena, proof.discharged, prove, proof.proofs);
   choreo::ReportProofs(graph, proof.obligations, proof.proofs, diagnostics);
   ReportRegions(proof.regions, diagnostics);
   return proof;
@@ -59,7 +63,8 @@ ChoreographyProof ProveChoreography(choreo::Graph& graph, expr::Arena& arena,
 
 void Counts::Add(const choreo::Proof& proof) {
   const Verdict verdict = proof.decision.verdict;
-  (verdict == Verdict::kProved ? holds : verdict == Verdict::kRefuted ? fails : open) += 1;
+  (verdict == Verdict::kProved ? holds : verdict::Fails(verdict) ? fails : open) += 1;
+  if (verdict == Verdict::kNotInductive) ++not_inductive;
   seconds += proof.seconds;
 }
 
@@ -73,7 +78,8 @@ Counts CountsOf(const ChoreographyProof& proof) {
 
 Verdict VerdictOf(const ChoreographyProof& proof) {
   const Counts total = CountsOf(proof);
-  if (total.fails > 0 || !proof.obligations.missing.empty()) return Verdict::kRefuted;
+  if (total.fails > total.not_inductive || !proof.obligations.missing.empty()) return Verdict::kRefuted;
+  if (total.not_inductive > 0) return Verdict::kNotInductive;
   if (total.open > 0 || !proof.regions.failed.empty()) return Verdict::kUnknown;
   return Verdict::kProved;
 }

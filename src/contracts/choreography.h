@@ -59,6 +59,7 @@ ChoreographyProof ProveChoreography(choreo::Graph& graph, expr::Arena& arena,
 /// they took.
 struct Counts {
   size_t holds = 0, fails = 0, open = 0;
+  size_t not_inductive = 0;  ///< of those that fail: no short run breaks them
   double seconds = 0;
 
   void Add(const choreo::Proof& proof);

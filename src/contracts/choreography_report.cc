@@ -162,6 +162,11 @@ nlohmann::json ToJson(const ChoreographyProof& report, const diag::SourceSet& so
     if (!p.cached && p.decision.verdict == Verdict::kProved) entry["way"] = Name(p.decision.way);
     if (o.span.file.valid()) entry["place"] = diag::SpanJson(sources, o.span);
     if (!p.decision.reason.empty()) entry["reason"] = p.decision.reason;
+    for (const choreo::Turn& turn : p.turns) {
+      nlohmann::json one{{"what", turn.what}};
+      if (turn.span.file.valid()) one["place"] = diag::SpanJson(sources, turn.span);
+      entry["way_there"].push_back(std::move(one));
+    }
     if (p.decision.verdict != Verdict::kProved && !p.decision.witness.values.empty()) {
       entry["state"] = choreo::StateOf(*report.graph, p.decision.witness);
       const std::string place = choreo::PlaceOf(*report.graph, p.decision.witness);

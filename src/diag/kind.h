@@ -77,6 +77,7 @@ enum class Kind : uint8_t {
   kChoreoAssumption,
   kChoreoNoAlternative,
   kChoreoPromise,
+  kChoreoNotInductive,
   kChoreoNever,
   kChoreoNoRegion,
   kChoreoUnknown,

@@ -113,6 +113,47 @@ constexpr KindInfo kTable[] = {
            "  { a: Idle(), b: Idle() }\n"
            "}\n",
      "prove"},
+    {Kind::kChoreoNotInductive, "choreo-not-inductive", Severity::kError,
+     "what may not hold, as far as is known where ways meet",
+     "What is known where a step begins comes from the motions, guards and messages on the way there. Where more than a\n"
+     "few ways meet, only what they have in common is kept. What is known here allows a state in which something fails,\n"
+     "but no run was found that comes to such a state: perhaps there is none. Let `post` of the motions before, or a\n"
+     "guard, say what holds. If a run breaks it, the finding has the kind of what fails, and shows the way there.",
+     "robot Hand {\n"
+     "  state h, g : length in [-5 m, 5 m]\n"
+     "  body sphere(self, 10 cm)\n"
+     "  motion Wait() interruptible [0 s, inf) {}\n"
+     "  motion Lift(to: length) noninterruptible [1 s, 1 s] {\n"
+     "    modifies h\n"
+     "    pre h >= 0\n"
+     "    during h >= 0\n"
+     "    post h == to\n"
+     "  }\n"
+     "  motion Open(to: length) noninterruptible [1 s, 1 s] {\n"
+     "    modifies g\n"
+     "    pre g >= 0\n"
+     "    during g >= 0\n"
+     "    post g == to\n"
+     "  }\n"
+     "}\n"
+     "world V { a: Hand at (0, 0, 0) b: Hand at (2 m, 0, 0) }\n"
+     "choreography C in V {\n"
+     "  initially a.h == 0 and a.g == 0\n"
+     "  loop {\n"
+     "    choose at a {\n"
+     "      when a.h >= -5 m { a -> b: p() { a: Lift(1 m), b: Wait() } }\n"
+     "      when a.h >= -5 m { a -> b: q() { a: Lift(2 m), b: Wait() } }\n"
+     "      when a.h >= -5 m { a -> b: r() { a: Lift(3 m), b: Wait() } }\n"
+     "      when a.h >= -5 m { a -> b: t() { a: Lift(4 m), b: Wait() } }\n"
+     "    }\n"
+     "    choose at a {\n"
+     "      when a.h >= -5 m { a -> b: p() { a: Open(1 m), b: Wait() } }\n"
+     "      when a.h >= -5 m { a -> b: q() { a: Open(2 m), b: Wait() } }\n"
+     "      when a.h >= -5 m { a -> b: r() { a: Open(3 m), b: Wait() } }\n"
+     "    }\n"
+     "  }\n"
+     "}\n",
+     "prove"},
     {Kind::kChoreoNever, "choreo-never", Severity::kWarning, "a step that never happens",
      "What is known where this motion begins contradicts itself, so that everything about it is true. Perhaps a guard\n"
      "cannot hold, or `initially` has no state.",

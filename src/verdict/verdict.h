@@ -24,6 +24,9 @@ std::string_view Name(Verdict verdict);
 /// to worst.
 constexpr Verdict Worse(Verdict a, Verdict b) { return a < b ? b : a; }
 
+/// Reports whether the verdict is against the claim: kNotInductive or kRefuted.
+constexpr bool Fails(Verdict v) { return v >= Verdict::kNotInductive; }
+
 /// Says why a search ended without an answer.
 enum class Shortfall : uint8_t {
   kMethod,       ///< its method decides no more, however long it takes

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "choreo/prove/decide.h"
+#include "choreo/prove/routes.h"
 #include "solve/cache/proof_cache.h"
 
 /// Proves choreographies.
@@ -13,10 +14,12 @@ namespace rondo::choreo {
 struct Proof {
   Decision decision;
   double seconds = 0;
-  bool cached = false;       ///< it was known from an earlier run
-  bool certified = false;    ///< it is proved, and the checker has accepted every certificate
-  bool interrupted = false;  ///< it is unknown because somebody stopped the proof
-  bool confirmed = false;    ///< it is refuted, and FCL sees the contact of the witness as well
+  bool cached = false;           ///< it was known from an earlier run
+  bool certified = false;        ///< it is proved, and the checker has accepted every certificate
+  bool interrupted = false;      ///< it is unknown because somebody stopped the proof
+  bool confirmed = false;        ///< it is refuted, and FCL sees the contact of the witness as well
+  std::vector<Turn> turns = {};  ///< it is refuted: what is decided on the way there (`FindRuns`)
+  size_t rounds = 0;  ///< it is not inductive: no run breaks it that comes so often to any place at most
 };
 
 /// Says how obligations are decided.

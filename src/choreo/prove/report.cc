@@ -105,6 +105,12 @@ std::string Quantity(double value, lang::Dimension dimension) {
   return unit == "a number" ? number(value) : number(value) + " " + unit;
 }
 
+// The way there: what is decided on it, in order.
+void ShowTurns(const Proof& proof, diag::Diagnostic& report) {
+  for (size_t t = 0; t < proof.turns.size(); ++t)
+    report.At(proof.turns[t].span, fmt::format("on the way there ({}): {}", t + 1, proof.turns[t].what));
+}
+
 void Explain(const Graph& graph, const Obligation& o, const Witness& witness, diag::Diagnostic& report) {
   if (witness.values.empty()) return;
   const auto clock = witness.values.find(graph.world->clock);
@@ -194,18 +200,30 @@ void ReportProofs(const Graph& graph, const Obligations& obligations, const Proo
       const bool own = o.keeping && p.kind == ObligationKind::kContract && p.nodes.empty() &&
                        !p.instances.empty() &&
                        std::ranges::find(o.instances, p.instances[0]) != o.instances.end();
-      if (own) return proofs.all[j].decision.verdict == verdict::Verdict::kRefuted;
+      if (own) return verdict::Fails(proofs.all[j].decision.verdict);
       return p.kind == ObligationKind::kPrecondition && p.nodes == o.nodes &&
-             (o.keeping || p.instances == o.instances) &&
-             proofs.all[j].decision.verdict == verdict::Verdict::kRefuted;
+             (o.keeping || p.instances == o.instances) && verdict::Fails(proofs.all[j].decision.verdict);
     };
     if ((o.kind == ObligationKind::kContract || o.keeping) && !o.nodes.empty() &&
         std::ranges::any_of(std::views::iota(size_t{0}, obligations.all.size()), follows))
       continue;
+    if (d.verdict == verdict::Verdict::kNotInductive) {
+      diag::Diagnostic& report = diagnostics.Report(Kind::kChoreoNotInductive, o.span, o.failure);
+      Explain(graph, o, d.witness, report);
+      const size_t rounds = proofs.all[i].rounds;
+      report.Note(rounds == 0 ? "no run was found that breaks it"
+                              : fmt::format("no run breaks it that goes through each loop {} at most",
+                                            rounds == 1 ? "once" : fmt::format("{} times", rounds)));
+      report.Help(
+          "where ways meet, only what all of them have in common is known: let `post` of the motions before, or a "
+          "guard, say what holds here");
+      continue;
+    }
     if (d.verdict == verdict::Verdict::kRefuted) {
       diag::Diagnostic& report = diagnostics.Report(KindOf(o.kind), o.span, o.failure);
       if (!d.reason.empty()) report.Note(d.reason);
       Explain(graph, o, d.witness, report);
+      ShowTurns(proofs.all[i], report);
       if (proofs.all[i].confirmed) report.Note("FCL finds them in contact there, too");
       if (const auto help = HelpFor(o.kind); !help.empty()) report.Help(std::string(help));
       continue;
