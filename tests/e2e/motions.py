@@ -70,5 +70,11 @@ with tempfile.TemporaryDirectory() as folder:
         kinds = {d["kind"] for d in report["diagnostics"]}
         check(f"listing {i + 1} of the tutorial", status == int(wanted) and kinds == ({kind} - {""}), f"status {status}, {sorted(kinds)}")
 
+    # What it suggests to try at the end.
+    whole = pathlib.Path(folder) / "whole.rondo"
+    whole.write_text(listings[-1][2].replace("70 deg", "130 deg").replace("in [0 deg, 90 deg]", "in [0 deg, 140 deg]"))
+    status, report = prove(whole)
+    check("an arm that bends too far", status == 3 and {d["kind"] for d in report["diagnostics"]} == {"choreo-no-region"}, f"status {status}")
+
 print(f"{results['passed']} passed, {results['failed']} failed")
 sys.exit(1 if results["failed"] else 0)
