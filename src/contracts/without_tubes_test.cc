@@ -59,6 +59,12 @@ const std::string kHeater = R"(robot P {
     post t >= 19.3 and t <= 20.7
     control every 0.2 s { u = select(t < 20, 3, 0) }
   }
+  motion LookAt() noninterruptible [10 s, 10 s] {
+    modifies t
+    pre t == 20.1
+    during t >= 19.2 and t <= 20.8
+    control every 0.2 s { u = select(t < 20, 3, 0) }
+  }
   motion LookTight() noninterruptible [10 s, 10 s] {
     modifies t
     pre t >= 19.5 and t <= 20.5
@@ -171,6 +177,14 @@ TEST_F(WithoutTubes, AControllerThatSwitchesAtInstantsIsProvedByCells) {
   const Certificate proof = ProofOf("Look()");
   ASSERT_TRUE(proof.paving);
   EXPECT_TRUE(Accepts("Look()", proof));
+}
+
+// 20.1 is no double: it is enclosed by two of them, which say nothing of how fine a grid should be.
+TEST_F(WithoutTubes, AStartThatIsRoundedIsNoWidth) {
+  const Certificate proof = ProofOf("LookAt()");
+  ASSERT_TRUE(proof.paving);
+  EXPECT_LT(proof.paving->edges[0].size(), 1000u);
+  EXPECT_TRUE(Accepts("LookAt()", proof));
 }
 
 TEST_F(WithoutTubes, APavingOfAnotherSystemIsRejected) {

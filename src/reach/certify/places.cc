@@ -133,8 +133,4 @@ bool Places::Enclose() {
   return true;
 }
 
-static bool IsEmpty(const interval::Box& box) {
-  return std::ranges::any_of(box, [](const Interval& side) { return side.IsEmpty(); });
-}
-
 }  // namespace rondo::reach::certify

@@ -15,6 +15,8 @@ namespace rondo::reach {
 namespace {
 
 constexpr size_t kMostCells = 20'000;
+constexpr double kThin =
+    1e-6;  // of a cell: a start that is thinner, such as a rounded number, stands in the middle of one
 constexpr double kMargin = 0.02;  // of a cell, by which images are widened: the checker may be a little wider
 // How many cells make up what samples visit, by how many states the grid divides, coarse grids first.
 const std::vector<std::vector<size_t>> kGrids = {{100, 400, 1600}, {40, 80, 160}, {12, 24}};
@@ -100,11 +102,12 @@ class Exploration {
       const Interval hull = interval::Hull(start, visited[i]);
       if (!std::isfinite(hull.Width()) || !(hull.Width() > 0)) return false;
       double width = hull.Width() / static_cast<double>(count);
-      const double parts = std::ceil(start.Width() / width);
+      const double parts = start.Width() < kThin * width ? 0 : std::ceil(start.Width() / width);
       if (parts > 0) width = start.Width() / parts;
-      const double first = parts > 0 ? start.lo : start.lo - width / 2;
+      const double first = parts > 0 ? start.lo : start.Middle() - width / 2;
       const double before = std::ceil((first - hull.lo + hull.Width() / 2) / width);
       const double after = std::ceil((hull.hi + hull.Width() / 2 - first) / width);
+      if (!(before + after < static_cast<double>(kMostCells))) return false;
       std::vector<double>& edges = paving_.edges.emplace_back();
       for (double k = -before; k <= after; ++k)
         edges.push_back(k == parts && parts > 0 ? start.hi : first + k * width);
@@ -124,9 +127,10 @@ class Exploration {
     return box;
   }
 
-  // All cells that make up these sides. False if the grid is not wide enough.
+  // All cells that make up these sides. False if the grid is not wide enough, or they are too many.
   bool CellsOf(const interval::Box& sides, const std::function<void(const Cell&)>& visit) const {
     Cell first, last;
+    double count = 1;
     for (size_t k = 0; k < live_.size(); ++k) {
       const std::vector<double>& edges = paving_.edges[k];
       const auto low = std::ranges::upper_bound(edges, sides[k].lo) - edges.begin() - 1;
@@ -134,7 +138,9 @@ class Exploration {
       if (low < 0 || high >= static_cast<ptrdiff_t>(edges.size()) - 1) return false;
       first.push_back(static_cast<uint32_t>(low));
       last.push_back(static_cast<uint32_t>(std::max(low, high)));
+      count *= static_cast<double>(last.back() - first.back() + 1);
     }
+    if (count > static_cast<double>(kMostCells)) return false;
     Cell at = first;
     while (true) {
       visit(at);
