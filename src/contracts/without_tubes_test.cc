@@ -143,7 +143,7 @@ TEST_F(WithoutTubes, EventsWithoutEndHaveNoInvariant) {
 TEST_F(WithoutTubes, ChangedInvariantsProveNothingFalse) {
   const Certificate proof = ProofOf("Keep" + kLevels);
   std::mt19937_64 random(3);
-  for (int k = 0; k < 60; ++k) {
+  for (int k = 0; k < 20; ++k) {
     Certificate changed = proof;
     for (size_t times = 1 + random() % 3; times > 0; --times) {
       auto& mode = (*changed.invariant)[random() % changed.invariant->size()];
@@ -197,7 +197,7 @@ TEST_F(WithoutTubes, APavingOfAnotherSystemIsRejected) {
 TEST_F(WithoutTubes, ChangedPavingsProveNothingFalse) {
   const Certificate proof = ProofOf("Look()");
   std::mt19937_64 random(4);
-  for (int k = 0; k < 40; ++k) {
+  for (int k = 0; k < 18; ++k) {
     Certificate changed = proof;
     reach::Paving& paving = *changed.paving;
     switch (random() % 6) {
