@@ -67,14 +67,14 @@ TEST(ExploreAgreement, WhatIsProvedIsNeverViolated) {
   size_t proved = 0;
   size_t violated = 0;
   size_t replayed = 0;
-  for (uint64_t seed = 1; seed <= Cases(50); ++seed) {
+  for (uint64_t seed = 1; seed <= Cases(36); ++seed) {
     const std::string text = Texts(seed).Whole();
     Loaded loaded(text);
     ASSERT_TRUE(loaded.good()) << "seed " << seed << "\n" << text;
     ProveOptions options;
     options.solver = &z3;
     // A second solver, for all in long runs and for some in short ones.
-    if (seed <= 10 || Cases(50) > 150) options.cross_check = &cvc5;
+    if (seed <= 10 || Cases(36) > 150) options.cross_check = &cvc5;
     options.jobs = 1;
     options.timeout = std::chrono::milliseconds(1000);
     // Every third program for a team of fixed size, which is proved in other ways, too.
@@ -100,9 +100,9 @@ TEST(ExploreAgreement, WhatIsProvedIsNeverViolated) {
     }
     for (const Row& row : report.rows) proved += row.verdict == verdict::Verdict::kProved ? 1 : 0;
   }
-  EXPECT_GT(proved, 10U);
-  EXPECT_GT(violated, 2U);
-  EXPECT_GT(replayed, 20U);
+  EXPECT_GT(proved, 8U);
+  EXPECT_GT(violated, 1U);
+  EXPECT_GT(replayed, 8U);
 }
 
 TEST(ExploreAgreement, ReductionsLoseNothing) {
