@@ -26,8 +26,8 @@ struct Sweep {
   std::string trouble = {};  ///< why there is no answer, if there is none
   bool out_of_time = false;  ///< more time would decide more
   bool stopped = false;      ///< somebody stopped it before its end
-  std::vector<SweepPart> parts =
-      {};  ///< ascending; neighbours differ in their verdict, or in being certified
+  /// Holds the parts, ascending; neighbours differ in their verdict, or in being certified.
+  std::vector<SweepPart> parts = {};
 };
 
 /// Decides the contract for parts of the range of the parameter: wide parts first, hard ones last.

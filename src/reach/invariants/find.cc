@@ -98,26 +98,20 @@ class Search {
         if (condition == arena_.False()) continue;
         auto to = std::ranges::find(all, after.value());
         if (to == all.end()) to = all.insert(to, after.value());
-        place.leaving.push_back({static_cast<size_t>(to - all.begin()), Closed(condition)});
-        place.stays = arena_.And(place.stays, NotInside(condition));
+        place.leaving.push_back({static_cast<size_t>(to - all.begin()), Weakened(condition, false)});
+        place.stays = arena_.And(place.stays, Weakened(condition, true));
       }
       places_.push_back(std::move(place));
     }
     return true;
   }
 
-  // What holds where a condition begins to hold: its comparisons, or equality.
-  TermId Closed(TermId condition) {
+  // What holds where a condition begins to hold: its comparisons, or equality. Negated: what holds for as long as it does
+  // not hold for any time: one of its comparisons fails, or is an equality.
+  TermId Weakened(TermId condition, bool negated) {
     const auto normal = Normalise(arena_, condition);
     if (!normal.ok() || !IsContinuous(arena_, condition)) return arena_.True();
-    return Weakened(normal.value(), normal.value().root, false);
-  }
-  // What holds for as long as a condition does not hold for any time: one of its comparisons fails, or is an
-  // equality.
-  TermId NotInside(TermId condition) {
-    const auto normal = Normalise(arena_, condition);
-    if (!normal.ok() || !IsContinuous(arena_, condition)) return arena_.True();
-    return Weakened(normal.value(), normal.value().root, true);
+    return Weakened(normal.value(), normal.value().root, negated);
   }
   TermId Weakened(const Formula& formula, size_t node, bool negated) {
     const Formula::Node& n = formula.nodes[node];
@@ -226,7 +220,7 @@ class Search {
 
   // Events that can happen at one instant, one after the other, from where `where` holds. False if the same
   // mode comes again: then there is no end to them, or it cannot be told.
-  bool Follow(const Place& from, TermId where, interval::Box box, const std::vector<size_t>& path) {
+  bool Follow(const Place& from, TermId where, const interval::Box& box, const std::vector<size_t>& path) {
     for (const Leaving& leaving : from.leaving) {
       const TermId there = arena_.And(where, leaving.condition);
       if (Never(there, box, kFewBoxes)) continue;

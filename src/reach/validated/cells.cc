@@ -278,7 +278,6 @@ bool ChoosesLaws(const Problem& problem) {
 
 std::optional<Proved> ProveByCells(const Problem& problem, Trajectories& trajectories,
                                    const ProverOptions& options, const base::StopToken& stop) {
-  if (!problem.events.empty() || !ChoosesLaws(problem)) return std::nullopt;
   return Exploration(problem, trajectories, options, stop).Run();
 }
 

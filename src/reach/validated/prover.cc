@@ -179,7 +179,9 @@ base::Result<Outcome> DecideWithSwitches(const Problem& problem, const ProverOpt
   Search search(*made.value(), options, trajectories, stop);
   // A few samples for what is plainly false, some more before a tube.
   if (auto refuted = search.Run(std::min<size_t>(options.samples, 8))) return Outcome{std::move(*refuted)};
-  if (auto proved = ProveByCells(problem, trajectories, options, stop)) return Outcome{std::move(*proved)};
+  if (problem.events.empty()) {
+    if (auto proved = ProveByCells(problem, trajectories, options, stop)) return Outcome{std::move(*proved)};
+  }
   auto found = invariants::Find(problem, trajectories, options.seed, stop);
   if (found && found->claims.size() == problem.claims.size()) return ByInvariant(problem, std::move(*found));
   if (auto refuted = search.Run(std::min<size_t>(options.samples, 32))) return Outcome{std::move(*refuted)};
