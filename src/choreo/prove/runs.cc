@@ -33,11 +33,13 @@ class Search {
     for (size_t rounds = 1; rounds <= kRounds; ++rounds) {
       bool none = true;
       for (const NodeId node : obligation.nodes) {
-        const Routes& routes = RoutesOf(node, rounds);
-        none = none && routes.complete;
-        for (const Route& route : routes.all) {
+        Known& known = KnownOf(node, rounds);
+        none = none && known.routes.complete;
+        for (size_t r = 0; r < known.routes.all.size(); ++r) {
+          const Route& route = known.routes.all[r];
           if (route.rounds < rounds) continue;  // looked at already
-          const Decision decision = On(route, obligation, stop);
+          if (!known.obligations[r]) known.obligations[r] = ObligationsOf(route.graph, arena_, {}, proved_);
+          const Decision decision = On(route, *known.obligations[r], obligation, stop);
           if (options_.stop.StopRequested()) return;
           if (decision.verdict == Verdict::kRefuted) {
             proof.turns = route.turns;
@@ -55,19 +57,26 @@ class Search {
   }
 
  private:
-  const Routes& RoutesOf(NodeId node, size_t rounds) {
-    const auto it = routes_.find({node, rounds});
-    if (it != routes_.end()) return it->second;
-    return routes_.emplace(std::pair(node, rounds), RoutesTo(graph_, node, rounds, kMostRoutes))
-        .first->second;
+  // Ways to a node, and what is to be shown on each of them, once somebody asked.
+  struct Known {
+    Routes routes;
+    std::vector<std::optional<Obligations>> obligations;
+  };
+  Known& KnownOf(NodeId node, size_t rounds) {
+    const auto [it, fresh] = known_.try_emplace({node, rounds});
+    if (fresh) {
+      it->second.routes = RoutesTo(graph_, node, rounds, kMostRoutes);
+      it->second.obligations.resize(it->second.routes.all.size());
+    }
+    return it->second;
   }
 
   // The same obligation where only this way leads to the node. Refuted if any of those that are like it is.
-  Decision On(const Route& route, const Obligation& obligation, const base::StopToken& stop) {
+  Decision On(const Route& route, const Obligations& all, const Obligation& obligation,
+              const base::StopToken& stop) {
     Decision worst;
     worst.verdict = Verdict::kProved;
     bool found = false;
-    const Obligations all = ObligationsOf(route.graph, arena_, {}, proved_);
     for (const Obligation& o : all.all) {
       const bool here = std::ranges::find(o.nodes, route.target) != o.nodes.end();
       if (!here || o.kind != obligation.kind || o.title != obligation.title) continue;
@@ -86,7 +95,7 @@ class Search {
   expr::Arena& arena_;
   const std::set<std::string>& proved_;
   const ProveOptions& options_;
-  std::map<std::pair<NodeId, size_t>, Routes> routes_;
+  std::map<std::pair<NodeId, size_t>, Known> known_;
 };
 
 }  // namespace
